@@ -1,0 +1,329 @@
+"""Block structures: vertices, conforming quads, their edges, chains and names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hoblock import topology_checks as checks
+from hoblock.curves import Curve, Displaced, NodalCurve
+from hoblock.curves import Reversed as ReversedCurve
+from hoblock.errors import CurveError, TopologyError
+from hoblock.grading import Grading, Uniform
+from hoblock.grading import Reversed as ReversedGrading
+from hoblock.orientation import orient
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["BlockStructure", "BlockTopology"]
+
+
+def _read_only(array: NDArray[np.generic]) -> None:
+    array.setflags(write=False)
+
+
+@dataclass(frozen=True, eq=False)
+class BlockTopology:
+    """What does not change when blocks move: quads, directed edges, chains, element counts, names.
+
+    Attributes
+    ----------
+    vertex_names : tuple of str
+    quads : ndarray, shape (b, 4)
+        Vertices of each block, counter-clockwise, from the vertex both of whose edges leave it.
+    edges : ndarray, shape (m, 2)
+        First and second vertex of each block edge; opposite edges of a block are parallel.
+    block_edges : ndarray, shape (b, 4)
+        Edges of each block: bottom, right, top, left (sides 0 to 3).
+    chains : ndarray, shape (m,)
+        Chain of each edge.
+    counts : ndarray, shape (m,)
+        Number of elements along each edge, equal in a chain.
+    block_groups, edge_groups : mapping of str to ndarray
+        Named blocks and named edges.
+    """
+
+    vertex_names: tuple[str, ...]
+    quads: Index
+    edges: Index
+    block_edges: Index
+    chains: Index
+    counts: Index
+    block_groups: Mapping[str, Index]
+    edge_groups: Mapping[str, Index]
+    _edge_of: Mapping[tuple[int, int], int] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for array in (self.quads, self.edges, self.block_edges, self.chains, self.counts):
+            _read_only(array)
+        for groups in (self.block_groups, self.edge_groups):
+            for array in groups.values():
+                _read_only(array)
+        lookup = {(int(a), int(b)): k for k, (a, b) in enumerate(self.edges)}
+        object.__setattr__(self, "_edge_of", MappingProxyType(lookup))
+
+    @property
+    def blocks_per_edge(self) -> Index:
+        """Number of blocks at each edge: 1 on the boundary, 2 inside."""
+        return np.bincount(self.block_edges.ravel(), minlength=len(self.edges))
+
+    @property
+    def boundary_vertices(self) -> Index:
+        """Vertices on the boundary, ascending."""
+        return np.unique(self.edges[self.blocks_per_edge == 1])
+
+    def vertex(self, name: str) -> int:
+        """Return the index of a vertex by name.
+
+        Raises
+        ------
+        TopologyError
+            If there is no such vertex.
+        """
+        try:
+            return self.vertex_names.index(name)
+        except ValueError:
+            raise TopologyError(f"no vertex named '{name}'{checks.did_you_mean(name, self.vertex_names)}") from None
+
+    def edge(self, first: int, second: int) -> tuple[int, bool]:
+        """Return the edge between two vertices and whether it runs from ``first`` to ``second``.
+
+        Raises
+        ------
+        TopologyError
+            If no block has that edge.
+        """
+        if (first, second) in self._edge_of:
+            return self._edge_of[first, second], True
+        if (second, first) in self._edge_of:
+            return self._edge_of[second, first], False
+        names = self.vertex_names
+        raise TopologyError(f"no block edge joins '{names[first]}' and '{names[second]}'. Name two corners of one side "
+                            "of a block.")
+
+    def edge_name(self, edge: int) -> str:
+        """Return 'first–second' with the names of the edge's vertices."""
+        first, second = self.edges[edge]
+        return f"{self.vertex_names[first]}–{self.vertex_names[second]}"
+
+    def block_name(self, block: int) -> str:
+        """Return the block's number, groups and vertices for messages."""
+        groups = [name for name, members in self.block_groups.items() if block in members]
+        corners = ", ".join(self.vertex_names[v] for v in self.quads[block])
+        return f"block {block}{' of ' + '/'.join(groups) if groups else ''} ({corners})"
+
+
+@dataclass(frozen=True, eq=False)
+class BlockStructure:
+    """A coarse quad mesh whose edges carry geometry and grading.
+
+    Use :meth:`build` to make one; the constructor takes parts that have been checked.
+
+    Attributes
+    ----------
+    topology : BlockTopology
+        Shared by all structures that differ by motion only.
+    vertices : ndarray, shape (n, 2)
+    curves : mapping of edge to Curve
+        In the direction of the topology's edge. Edges without a curve are straight.
+    gradings : tuple of Grading
+        One for each edge, in the direction of the topology's edge.
+    """
+
+    topology: BlockTopology
+    vertices: Array
+    curves: Mapping[int, Curve]
+    gradings: tuple[Grading, ...]
+
+    def __post_init__(self) -> None:
+        vertices = np.array(self.vertices, dtype=float)
+        _read_only(vertices)
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "curves", MappingProxyType(dict(self.curves)))
+
+    @staticmethod
+    def build(
+        vertices: Mapping[str, Sequence[float]] | Array,
+        blocks: Mapping[str, Iterable[Sequence[str | int]]] | Iterable[Sequence[str | int]],
+        *,
+        counts: Mapping[tuple[str | int, str | int], int] | int = 1,
+        edges: Mapping[str, Iterable[tuple[str | int, str | int]]] | None = None,
+        curves: Mapping[tuple[str | int, str | int], Curve] | None = None,
+        gradings: Mapping[tuple[str | int, str | int], Grading] | None = None,
+        default_count: int = 1,
+    ) -> BlockStructure:
+        """Build and check a block structure.
+
+        Parameters
+        ----------
+        vertices : mapping of name to (x, y), or ndarray of shape (n, 2)
+            Vertices of an array are named by their index.
+        blocks : mapping of group to quads, or quads
+            Four vertices each, counter-clockwise; by name, or by index for an array.
+        counts : mapping of (vertex, vertex) to int, or int
+            Elements along an edge; holds for its whole chain.
+        edges : mapping of name to edges, optional
+            Named edges, each a pair of vertices in either order.
+        curves, gradings : mapping of (vertex, vertex) to Curve or Grading, optional
+            In the direction of the pair.
+        default_count : int
+            For chains that ``counts`` does not mention.
+
+        Returns
+        -------
+        BlockStructure
+
+        Raises
+        ------
+        TopologyError
+            Unknown vertices, inverted or non-convex blocks, non-conforming blocks, conflicting counts.
+        CurveError
+            A curve that misses its vertices.
+        """
+        names, positions = checks.vertex_table(vertices)
+        number = {name: k for k, name in enumerate(names)}
+
+        def vertex(key: str | int, place: str) -> int:
+            name = str(key)
+            if name not in number:
+                raise TopologyError(f"{place}: no vertex named '{name}'{checks.did_you_mean(name, names)}")
+            return number[name]
+
+        grouped = blocks if isinstance(blocks, Mapping) else {"blocks": blocks}
+        quads, groups = checks.quad_table(grouped, vertex)
+        topology_edges, block_edges, chains, rotation = orient(quads, names)
+        quads = np.take_along_axis(quads, (np.arange(4) + rotation[:, None]) % 4, axis=1)
+        topology = BlockTopology(
+            names, quads, topology_edges, block_edges, chains, np.ones(len(chains), dtype=np.int64), groups, {}
+        )
+        curved = _directed(topology, curves or {}, vertex, "curves", ReversedCurve)
+        graded = _directed(topology, gradings or {}, vertex, "gradings", ReversedGrading)
+        checks.check_geometry(topology, positions, frozenset(curved))
+        named = {
+            name: np.array([topology.edge(vertex(a, f"edges.{name}"), vertex(b, f"edges.{name}"))[0] for a, b in pairs],
+                           dtype=np.int64)
+            for name, pairs in (edges or {}).items()
+        }
+        asked = {} if isinstance(counts, int) else {
+            (vertex(a, "counts"), vertex(b, "counts")): n for (a, b), n in counts.items()
+        }
+        per_edge = checks.chain_counts(topology, asked, counts if isinstance(counts, int) else default_count)
+        topology = replace(topology, counts=per_edge, edge_groups=named)
+        _check_ends(topology, positions, curved)
+        gradings_by_edge = tuple(graded.get(k, Uniform()) for k in range(len(topology_edges)))
+        return BlockStructure(topology, positions, curved, gradings_by_edge)
+
+    def moved(self, vertices: Array, curves: Mapping[int, Curve] | None = None) -> BlockStructure:
+        """Return the structure with other vertex positions, sharing topology and gradings.
+
+        Parameters
+        ----------
+        vertices : ndarray, shape (n, 2)
+        curves : mapping of edge to Curve, optional
+            New geometry of some edges, in the topology's direction; it must meet the new vertices. A curved edge that
+            is not listed keeps its shape, its ends displaced with its vertices (linear blending).
+        """
+        vertices = np.asarray(vertices, dtype=float)
+        if vertices.shape != self.vertices.shape:
+            raise TopologyError(f"moved: vertices have shape {vertices.shape}; expected {self.vertices.shape}.")
+        replaced = dict(curves or {})
+        shift = vertices - self.vertices
+        result: dict[int, Curve] = {}
+        for edge, curve in self.curves.items():
+            first, second = self.topology.edges[edge]
+            if edge in replaced:
+                continue
+            if shift[first].any() or shift[second].any():
+                x, y = (float(value) for value in shift[first])
+                u, v = (float(value) for value in shift[second])
+                if isinstance(curve, Displaced):  # keep one level of blending, however often the structure moves
+                    x, y, u, v = x + curve.first[0], y + curve.first[1], u + curve.second[0], v + curve.second[1]
+                    curve = curve.curve
+                curve = Displaced(curve, (x, y), (u, v))
+            result[edge] = curve
+        result.update(replaced)
+        return BlockStructure(self.topology, vertices, result, self.gradings)
+
+    def restricted(self, groups: Iterable[str]) -> BlockStructure:
+        """Return the part made of some block groups; edges keep their direction, names and numbers of elements.
+
+        Raises
+        ------
+        TopologyError
+            If a group does not exist.
+        """
+        topology = self.topology
+        wanted = list(groups)
+        for name in wanted:
+            if name not in topology.block_groups:
+                raise TopologyError(f"no group of blocks named '{name}'{checks.did_you_mean(name, topology.block_groups)}")
+        blocks = np.unique(np.concatenate([topology.block_groups[name] for name in wanted]))
+        edges = np.unique(topology.block_edges[blocks])
+        vertices = np.unique(topology.quads[blocks])
+        new_block, new_edge, new_vertex = (
+            np.full(size, -1) for size in (len(topology.quads), len(topology.edges), len(self.vertices))
+        )
+        new_block[blocks], new_edge[edges], new_vertex[vertices] = (
+            np.arange(len(kept)) for kept in (blocks, edges, vertices)
+        )
+
+        def kept(groups: Mapping[str, Index], renumber: Index) -> dict[str, Index]:
+            inside = {name: renumber[members] for name, members in groups.items()}
+            return {name: members[members >= 0] for name, members in inside.items() if (members >= 0).any()}
+
+        part = BlockTopology(
+            tuple(topology.vertex_names[v] for v in vertices),
+            new_vertex[topology.quads[blocks]],
+            new_vertex[topology.edges[edges]],
+            new_edge[topology.block_edges[blocks]],
+            np.unique(topology.chains[edges], return_inverse=True)[1].astype(np.int64),
+            topology.counts[edges],
+            kept(topology.block_groups, new_block),
+            kept(topology.edge_groups, new_edge),
+        )
+        curves = {int(new_edge[edge]): curve for edge, curve in self.curves.items() if new_edge[edge] >= 0}
+        return BlockStructure(part, self.vertices[vertices], curves, tuple(self.gradings[k] for k in edges))
+
+    def with_edge_group(self, name: str, edges: Sequence[int] | Index) -> BlockStructure:
+        """Return the structure with one more group of named edges."""
+        groups = {**self.topology.edge_groups, name: np.array(edges, dtype=np.int64)}
+        return replace(self, topology=replace(self.topology, edge_groups=groups))
+
+    def shared_edges(self, first: Iterable[str], second: Iterable[str]) -> Index:
+        """Return the edges that have a block of one set of groups on one side and of the other on the other."""
+        groups = self.topology.block_groups
+        touching = [
+            np.unique(self.topology.block_edges[np.concatenate([groups[name] for name in names])])
+            for names in (list(first), list(second))
+        ]
+        return np.intersect1d(*touching)
+
+
+def _directed(topology, pairs, vertex, place, reverse):  # type: ignore[no-untyped-def]
+    """Attach things given by vertex pairs to directed edges, turning those given the other way round."""
+    result = {}
+    for (first, second), thing in pairs.items():
+        edge, forward = topology.edge(vertex(first, place), vertex(second, place))
+        if edge in result:
+            raise TopologyError(f"{place}: edge {topology.edge_name(edge)} is given twice. Remove one.")
+        result[edge] = thing if forward else reverse(thing)
+    return result
+
+
+def _check_ends(topology: BlockTopology, vertices: Array, curves: Mapping[int, Curve]) -> None:
+    size = float(np.ptp(vertices, axis=0).max())
+    for edge, curve in curves.items():
+        ends = curve.points[[0, -1]] if isinstance(curve, NodalCurve) else curve(np.array([0.0, 1.0]))
+        for end, vertex in zip(ends, topology.edges[edge], strict=True):
+            gap = float(np.hypot(*(end - vertices[vertex])))
+            if not gap <= 1e-9 * size:
+                raise CurveError(
+                    f"curve on edge {topology.edge_name(edge)}: end point ({end[0]:g}, {end[1]:g}) is {gap:.2g} away from "
+                    f"vertex '{topology.vertex_names[vertex]}' at ({vertices[vertex][0]:g}, {vertices[vertex][1]:g}); "
+                    f"must coincide within {1e-9 * size:.1g}. Check the curve's direction."
+                )

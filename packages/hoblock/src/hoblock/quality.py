@@ -1,0 +1,214 @@
+"""Validity and quality of elements: det J and its certified bounds, scaled Jacobian, Jacobian ratio, skewness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hoblock.mesh import QuadMesh
+from hoblock.reference import bernstein_from_lagrange, equispaced, gauss_lobatto, tensor_basis, tensor_gradient
+
+Array = NDArray[np.float64]
+
+__all__ = [
+    "BadElement",
+    "det_jacobian",
+    "det_jacobian_bounds",
+    "equiangular_skewness",
+    "invalid_elements",
+    "jacobian",
+    "jacobian_ratio",
+    "minimum_det_jacobian",
+    "scaled_jacobian",
+]
+
+
+def _square(nodes: Array) -> Array:
+    return np.stack(np.meshgrid(nodes, nodes, indexing="xy"), axis=-1).reshape(-1, 2)
+
+
+def jacobian(mesh: QuadMesh, xi: Array) -> Array:
+    """Jacobian of the element maps at reference points.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+    xi : ndarray, shape (k, 2)
+
+    Returns
+    -------
+    ndarray, shape (e, k, 2, 2)
+        J[..., c, d] = ∂x_c/∂ξ_d.
+    """
+    gradient = tensor_gradient(gauss_lobatto(mesh.order), xi)  # (k, i, d)
+    x = mesh.coordinates.transpose(0, 2, 1)  # (e, c, i)
+    flat = x @ gradient.transpose(1, 0, 2).reshape(gradient.shape[1], -1)
+    return np.asarray(flat.reshape(len(x), 2, len(xi), 2).transpose(0, 2, 1, 3))
+
+
+def _determinant(J: Array) -> Array:
+    return np.asarray(J[..., 0, 0] * J[..., 1, 1] - J[..., 0, 1] * J[..., 1, 0])
+
+
+def det_jacobian(mesh: QuadMesh, xi: Array) -> Array:
+    """det J at reference points (k, 2), shape (e, k)."""
+    return _determinant(jacobian(mesh, xi))
+
+
+def _dense_grid(order: int) -> Array:
+    return _square(equispaced(2 * order))
+
+
+def minimum_det_jacobian(mesh: QuadMesh) -> float:
+    """Smallest det J over all elements, sampled at (2p + 1)² points of each and at its nodes."""
+    points = np.concatenate([_dense_grid(mesh.order), _square(gauss_lobatto(mesh.order))])
+    return float(det_jacobian(mesh, points).min())
+
+
+def scaled_jacobian(mesh: QuadMesh, samples: int | None = None) -> Array:
+    """Minimum of det J/(|x_ξ||x_η|) over a grid of each element, shape (e,), in [-1, 1].
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+    samples : int, optional
+        Points along each direction; default 2p + 1.
+    """
+    J = jacobian(mesh, _dense_grid(mesh.order) if samples is None else _square(equispaced(samples - 1)))
+    lengths = np.hypot(J[..., 0, 0], J[..., 1, 0]) * np.hypot(J[..., 0, 1], J[..., 1, 1])
+    return np.asarray((_determinant(J) / np.maximum(lengths, np.finfo(float).tiny)).min(axis=1))
+
+
+def jacobian_ratio(mesh: QuadMesh) -> Array:
+    """min det J/max det J over a dense grid of each element, shape (e,), in (-∞, 1]."""
+    det_J = det_jacobian(mesh, _dense_grid(mesh.order))
+    largest = det_J.max(axis=1)
+    return np.asarray(np.where(largest > 0.0, det_J.min(axis=1) / np.where(largest > 0.0, largest, 1.0), -np.inf))
+
+
+def equiangular_skewness(mesh: QuadMesh) -> Array:
+    """Equiangular skewness max{(θ_max - 90°)/90°, (90° - θ_min)/90°} of each element, shape (e,).
+
+    The angles are those between the element's curved sides at its corners. 0 is best; above 1 a corner is turned over.
+    """
+    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    J = jacobian(mesh, corners)
+    angle = np.arctan2(_determinant(J), J[..., 0, 0] * J[..., 0, 1] + J[..., 1, 0] * J[..., 1, 1])
+    # At corners 1 and 3 the interior angle is the supplement of the angle from x_ξ to x_η.
+    angle[:, [1, 3]] = np.pi - angle[:, [1, 3]]
+    return np.asarray(np.abs(angle / (np.pi / 2.0) - 1.0).max(axis=1))
+
+
+def _bernstein(mesh: QuadMesh) -> Array:
+    """Bernstein coefficients (e, 2p, 2p) of det J, a polynomial of degree 2p - 1 in each direction (η first)."""
+    degree = 2 * mesh.order - 1
+    det_J = det_jacobian(mesh, _square(equispaced(degree))).reshape(-1, degree + 1, degree + 1)
+    B = bernstein_from_lagrange(degree)
+    return np.asarray(B @ det_J @ B.T)
+
+
+def det_jacobian_bounds(mesh: QuadMesh, subdivisions: int = 0) -> tuple[Array, Array]:
+    """Certified lower and upper bounds of det J of each element.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+    subdivisions : int
+        How often an element whose lower bound is not positive is cut in four to sharpen that bound.
+
+    Returns
+    -------
+    lower, upper : ndarray, shape (e,)
+
+    References
+    ----------
+    Johnen, Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372, doi:10.1016/j.jcp.2012.08.051.
+    """
+    coefficients = _bernstein(mesh)
+    lower, upper = coefficients.min(axis=(1, 2)), coefficients.max(axis=(1, 2))
+    open_elements = np.flatnonzero(lower <= 0.0)
+    pieces, owner = coefficients[open_elements], open_elements
+    settled = np.full(len(lower), np.inf)  # smallest positive bound among the pieces that need no further cut
+    for _ in range(subdivisions):
+        if not owner.size:
+            break
+        pieces, owner = _subdivide(pieces), np.repeat(owner, 4)
+        low = pieces.min(axis=(1, 2))
+        bound = settled.copy()
+        np.minimum.at(bound, owner, low)
+        touched = np.unique(owner)
+        lower[touched] = bound[touched]
+        done = low > 0.0
+        np.minimum.at(settled, owner[done], low[done])
+        pieces, owner = pieces[~done], owner[~done]
+    return lower, upper
+
+
+def _subdivide(coefficients: Array) -> Array:
+    """Cut polynomials in four by de Casteljau's algorithm; children of one parent are adjacent."""
+    def halves(c: Array) -> tuple[Array, Array]:
+        left, right = [c[:, 0]], [c[:, -1]]
+        while c.shape[1] > 1:
+            c = 0.5 * (c[:, :-1] + c[:, 1:])
+            left.append(c[:, 0])
+            right.append(c[:, -1])
+        return np.stack(left, axis=1), np.stack(right[::-1], axis=1)
+
+    quarters = []
+    for part in halves(coefficients):
+        for piece in halves(part.transpose(0, 2, 1)):
+            quarters.append(piece.transpose(0, 2, 1))
+    return np.stack(quarters, axis=1).reshape(-1, *coefficients.shape[1:])
+
+
+@dataclass(frozen=True)
+class BadElement:
+    """An element whose det J is not positive: where it is worst, and the likely reason."""
+
+    element: int
+    det_J: float
+    xi: float
+    eta: float
+    x: float
+    y: float
+    reason: str
+
+
+def invalid_elements(mesh: QuadMesh, subdivisions: int = 6) -> list[BadElement]:
+    """Elements that are not certainly valid, worst first.
+
+    An element counts as valid when the Bernstein bound proves det J > 0, after up to ``subdivisions`` cuts.
+    """
+    lower, _ = det_jacobian_bounds(mesh)
+    if (lower > 0.0).all():
+        return []
+    lower, _ = det_jacobian_bounds(mesh, subdivisions)
+    elements = np.flatnonzero(~(lower > 0.0))
+    if not elements.size:
+        return []
+    grid = np.concatenate([_dense_grid(mesh.order), _square(gauss_lobatto(mesh.order))])
+    part = QuadMesh(mesh.points, mesh.cells[elements].copy(), mesh.order, {}, {})
+    J = jacobian(part, grid)
+    det_J = _determinant(J)
+    at = det_J.argmin(axis=1)
+    places = (tensor_basis(gauss_lobatto(mesh.order), grid[at])[:, None, :] @ part.coordinates)[:, 0]
+    found = [
+        BadElement(int(element), float(det_J[k, at[k]]), *map(float, grid[at[k]]), *map(float, places[k]),
+                   _reason(det_J[k], grid[at[k]]))
+        for k, element in enumerate(elements)
+    ]
+    return sorted(found, key=lambda bad: bad.det_J)
+
+
+def _reason(det_J: Array, xi: Array) -> str:
+    if not np.isfinite(det_J).all():
+        return "Its nodes are not finite."
+    if (det_J <= 0.0).all():
+        return "The element is inverted: check the order of the block's vertices and the positions of its neighbours."
+    if det_J.min() > 0.0:
+        return "det J is positive where sampled but too close to zero to be certain: move a vertex or soften the curve."
+    if np.abs(xi).max() == 1.0 and np.abs(xi).min() == 1.0:
+        return "A corner angle is 180° or more there: move the block vertex."
+    return "Edges of its block cross or bend too far: move a vertex, split the block or soften the curve or the grading."
