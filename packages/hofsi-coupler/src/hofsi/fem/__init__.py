@@ -1,0 +1,1 @@
+"""Finite elements on batches of quadrilaterals: spaces, geometry factors, constraints, condensation."""

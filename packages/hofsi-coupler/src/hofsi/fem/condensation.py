@@ -1,0 +1,142 @@
+"""Static condensation: unknowns inside elements are eliminated, the rest is solved on the element boundaries."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from hofsi.errors import LinearSolverError
+from hofsi.fem.assembly import MatrixPattern, assemble_vector
+from hofsi.fem.constraints import NodeConstraints
+from hofsi.linear.direct import DirectFactor
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["CondensedFactor", "CondensedSystem"]
+
+
+class CondensedSystem:
+    """Pattern of condensed systems on the same elements and constraints.
+
+    Parameters
+    ----------
+    dofs : ndarray, shape (e, k)
+        Global numbers of the local unknowns of each element; those on the element's boundary first. Unknowns of a
+        vector field come first: node n has 2n and 2n + 1.
+    boundary : int
+        How many local unknowns lie on the element's boundary.
+    size : int
+        Number of global unknowns.
+    constraints : NodeConstraints
+        Of the vector field.
+    pinned : sequence of int
+        Further unknowns that are held fixed, for example one pressure of an enclosed flow.
+    """
+
+    def __init__(self, dofs: Index, boundary: int, size: int, constraints: NodeConstraints,
+                 pinned: tuple[int, ...] = ()) -> None:
+        self.dofs, self.boundary, self.size = dofs, boundary, size
+        self.inner = dofs.shape[1] - boundary
+        free = np.zeros(size, dtype=bool)
+        free[dofs[:, :boundary]] = True
+        vector = constraints.fixed.size
+        free[:vector] &= ~constraints.fixed.ravel()
+        free[list(pinned)] = False
+        self.unknowns = np.flatnonzero(free)
+        number = np.full(size, -1)
+        number[self.unknowns] = np.arange(len(self.unknowns))
+        self._skeleton = number[dofs[:, :boundary]]
+        self._pattern = MatrixPattern(self._skeleton, len(self.unknowns))
+        self._rotated, self._rotation = self._rotations(constraints)
+
+    def _rotations(self, constraints: NodeConstraints) -> tuple[Index, Array]:
+        """Elements with nodes in a frame of their own, and their local rotation matrices."""
+        if not constraints.rotated.size:
+            return np.zeros(0, dtype=np.int64), np.zeros((0, 0, 0))
+        dofs = self.dofs[:, : self.boundary]
+        vector = dofs < constraints.fixed.size
+        nodes = np.where(vector, dofs // 2, 0)
+        turned = vector & np.isin(nodes, constraints.rotated)
+        elements = np.flatnonzero(turned.any(axis=1))
+        R = np.zeros((len(elements), self.boundary, self.boundary))
+        R[:, np.arange(self.boundary), np.arange(self.boundary)] = 1.0
+        for k, element in enumerate(elements):
+            position = {int(dof): local for local, dof in enumerate(dofs[element])}
+            for node in np.unique(nodes[element][turned[element]]):
+                pair = [position[2 * int(node)], position[2 * int(node) + 1]]
+                R[k][np.ix_(pair, pair)] = constraints.frames[node]
+        return elements, R
+
+    def factorise(self, A: Array) -> CondensedFactor:
+        """Condense and factorise element matrices A of shape (e, k, k)."""
+        b = self.boundary
+        S = A[:, :b, :b]
+        inverse = X = None
+        if self.inner:
+            try:
+                inverse = np.linalg.inv(A[:, b:, b:])
+            except np.linalg.LinAlgError as error:
+                raise LinearSolverError("the matrix of an element's inner unknowns is singular.") from error
+            X = inverse @ A[:, b:, :b]
+            S = S - A[:, :b, b:] @ X
+        if self._rotated.size:
+            S = S.copy()
+            S[self._rotated] = self._rotation.transpose(0, 2, 1) @ S[self._rotated] @ self._rotation
+        return CondensedFactor(self, A[:, :b, b:], inverse, X, DirectFactor(self._pattern.matrix(S)))
+
+    def matrix(self, A: Array) -> sp.csc_matrix:
+        """Return the condensed matrix of element matrices, for inspection."""
+        return self.factorise(A).factor._matrix
+
+    def rotate_back(self, x: Array) -> Array:
+        """Element vectors (e, boundary) from the nodes' own frames to x and y."""
+        if self._rotated.size:
+            x[self._rotated] = (self._rotation @ x[self._rotated][:, :, None])[:, :, 0]
+        return x
+
+    def rotate(self, r: Array) -> Array:
+        """Element vectors (e, boundary) from x and y to the nodes' own frames."""
+        if self._rotated.size:
+            r[self._rotated] = (self._rotation.transpose(0, 2, 1) @ r[self._rotated][:, :, None])[:, :, 0]
+        return r
+
+
+class CondensedFactor:
+    """A factorised condensed system; made by `CondensedSystem.factorise`."""
+
+    def __init__(self, system: CondensedSystem, coupling: Array, inverse: Array | None, X: Array | None,
+                 factor: DirectFactor) -> None:
+        self.system, self.factor = system, factor
+        self._coupling, self._inverse, self._X = coupling, inverse, X
+
+    def solve(self, r: Array) -> Array:
+        """Solve for all unknowns.
+
+        Parameters
+        ----------
+        r : ndarray, shape (e, k)
+            Right-hand side, element by element.
+
+        Returns
+        -------
+        ndarray, shape (size,)
+            In x and y components; zero where constrained.
+        """
+        system = self.system
+        b = system.boundary
+        on_boundary = r[:, :b].copy()
+        z = None
+        if self._inverse is not None:
+            z = (self._inverse @ r[:, b:, None])[:, :, 0]
+            on_boundary -= (self._coupling @ z[:, :, None])[:, :, 0]
+        skeleton = system._skeleton
+        solution = self.factor.solve(assemble_vector(skeleton, system.rotate(on_boundary), len(system.unknowns)))
+        padded = np.append(solution, 0.0)  # number -1 reads the zero of a constrained unknown
+        x_b = system.rotate_back(padded[skeleton])
+        x = np.zeros(system.size)
+        x[system.dofs[:, :b]] = x_b
+        if self._X is not None and z is not None:
+            x[system.dofs[:, b:]] = z - (self._X @ x_b[:, :, None])[:, :, 0]
+        return x

@@ -1,0 +1,147 @@
+"""Boundary conditions of the fluid on a mesh: constraints, loads and the do-nothing term."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from hoblock import QuadMesh
+from numpy.typing import NDArray
+
+from hofsi import case
+from hofsi.fem.constraints import DirectedNodes, NodeConstraints
+from hofsi.fem.geometry import SideGeometry, physical_gradients, side_geometry
+from hofsi.fem.normals import consistent_normals
+from hofsi.fem.spaces import TaylorHood
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["FluidBoundary"]
+
+
+def _sides(mesh: QuadMesh, names: Sequence[str]) -> Index:
+    return np.concatenate([mesh.edge_groups[name] for name in names])
+
+
+def _nodes(mesh: QuadMesh, names: Sequence[str]) -> Index:
+    return np.unique(np.concatenate([mesh.edge_nodes(name) for name in names]))
+
+
+class FluidBoundary:
+    """The conditions of a fluid, resolved on its mesh.
+
+    Where conditions meet at a node, the interface comes first, then no-slip walls, given velocities, slip.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        In its reference position.
+    space : TaylorHood
+    conditions : sequence of FluidCondition
+    interface : ndarray
+        Nodes whose velocity the solid prescribes; may be empty.
+    viscosity : float
+    """
+
+    def __init__(self, mesh: QuadMesh, space: TaylorHood, conditions: Sequence[case.FluidCondition], interface: Index,
+                 viscosity: float) -> None:
+        self._mesh, self._space, self._viscosity = mesh, space, viscosity
+        self.interface = interface
+        walls = [c for c in conditions if isinstance(c, case.NoSlip)]
+        self.walls = _nodes(mesh, [name for c in walls for name in c.on]) if walls else np.zeros(0, dtype=np.int64)
+        self._given = [(c, _nodes(mesh, c.on)) for c in conditions if isinstance(c, case.Velocity)]
+        slips = [c for c in conditions if isinstance(c, case.Slip)]
+        self._slip = _sides(mesh, [name for c in slips for name in c.on]) if slips else np.zeros((0, 2), dtype=np.int64)
+        self._loads = [(c, _sides(mesh, c.on)) for c in conditions if isinstance(c, case.Traction | case.Pressure)]
+        self._partial = [
+            (c, _sides(mesh, c.on)) for c in conditions if isinstance(c, case.Velocity) and (c.traction_x or c.traction_y)
+        ]
+        free = [c for c in conditions if isinstance(c, case.DoNothing)]
+        self._open = _sides(mesh, [name for c in free for name in c.on]) if free else np.zeros((0, 2), dtype=np.int64)
+        self.enclosed = not (self._loads or self._open.size or any(c.x is None or c.y is None for c, _ in self._given))
+        self._constraints: NodeConstraints | None = None
+        self._constraints_at: Array | None = None
+
+    @property
+    def sticking(self) -> Index:
+        """Nodes that move with the boundary: no relative velocity there."""
+        return np.union1d(self.interface, self.walls)
+
+    def constraints(self, points: Array) -> NodeConstraints:
+        """Constraints at given node positions; kept as long as the slip edges do not move."""
+        if self._constraints is None or (self._slip.size and not self._same_slip(points)):
+            self._constraints = NodeConstraints(len(points), [entry for entry in self._entries(points)])
+            self._constraints_at = points
+        return self._constraints
+
+    def _same_slip(self, points: Array) -> bool:
+        before = self._constraints_at
+        if before is None or before is points:
+            return before is points
+        nodes = self._space.velocity_cells[self._slip[:, 0]]
+        return bool(np.array_equal(before[nodes], points[nodes]))
+
+    def _entries(self, points: Array) -> list[DirectedNodes]:
+        entries = [DirectedNodes.component(nodes, axis) for nodes in (self.interface, self.walls) for axis in range(2)]
+        for condition, nodes in self._given:
+            for axis, component in enumerate((condition.x, condition.y)):
+                if component is not None:
+                    entries.append(DirectedNodes.component(nodes, axis))
+        if self._slip.size:
+            entries += consistent_normals(points[self._space.velocity_cells], self._space.velocity_cells, self._slip,
+                                          self._space.velocity_sides)
+        return entries
+
+    def impose(self, velocity: Array, points: Array, mesh_velocity: Array, interface: Array, time: float) -> Array:
+        """Return the velocity with all constraints satisfied.
+
+        Parameters
+        ----------
+        velocity, points, mesh_velocity : ndarray, shape (n, 2)
+        interface : ndarray, shape (k, 2)
+            Velocity of the interface nodes.
+        time : float
+        """
+        values = [interface[:, 0], interface[:, 1], mesh_velocity[self.walls, 0], mesh_velocity[self.walls, 1]]
+        for condition, nodes in self._given:
+            x, y = points[nodes].T
+            values += [c.evaluate(x=x, y=y, t=time) for c in (condition.x, condition.y) if c is not None]
+        constraints = self.constraints(points)
+        values += [np.sum(entry.directions * mesh_velocity[entry.nodes], axis=1)
+                   for entry in constraints.entries[len(values):]]
+        return constraints.impose(velocity, values)
+
+    def add_loads(self, f: Array, points: Array, time: float) -> None:
+        """Add given tractions and pressures to element vectors (e, 2n + m)."""
+        if not self._loads and not self._partial:
+            return
+        X = points[self._space.velocity_cells]
+        for condition, sides in [*self._loads, *self._partial]:
+            for side in side_geometry(X, sides, self._space.velocity_sides):
+                traction = self._traction(condition, side, time)
+                local = side.table.N.T @ traction
+                np.add.at(f, side.elements, self._space.local_vector(local))
+
+    @staticmethod
+    def _traction(condition: case.FluidCondition, side: SideGeometry, time: float) -> Array:
+        """Traction times length and weight at the points of a side, shape (k, q, 2)."""
+        x, y = side.x[..., 0], side.x[..., 1]
+        if isinstance(condition, case.Pressure):
+            return np.asarray(-condition.value.evaluate(x=x, y=y, t=time)[..., None] * side.normals)
+        pair = (condition.x, condition.y) if isinstance(condition, case.Traction) else (
+            condition.traction_x, condition.traction_y)  # type: ignore[union-attr]
+        values = [np.zeros_like(x) if c is None else np.broadcast_to(c.evaluate(x=x, y=y, t=time), x.shape) for c in pair]
+        return np.stack(values, axis=-1) * side.lengths[..., None]
+
+    def add_do_nothing(self, A: Array, points: Array) -> None:
+        """Add -∫ μ (∂_a u_b n_b) v_a, which turns the natural condition into μ ∂u/∂n - p n = 0."""
+        if not self._open.size:
+            return
+        space = self._space
+        for side in side_geometry(points[space.velocity_cells], self._open, space.velocity_sides):
+            gradients = physical_gradients(side, side.table)
+            for a in range(2):
+                for b in range(2):
+                    w = -self._viscosity * side.normals[..., b]
+                    space.add(A, a, b, side.table.N.T @ (w[:, :, None] * gradients[a]), side.elements)
