@@ -1,0 +1,106 @@
+"""Sessions of the repository: ``nox --list`` shows them, ``nox -s NAME -- ARGUMENTS`` runs one."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import nox
+
+nox.needs_version = ">=2024.3.2"
+nox.options.sessions = ["tests"]
+nox.options.reuse_venv = "yes"
+nox.options.default_venv_backend = "uv|virtualenv"
+nox.options.error_on_missing_interpreters = True
+
+ROOT = Path(__file__).parent
+HOBLOCK = "packages/hoblock"
+HOFSI = "packages/hofsi-coupler"
+SOURCES = os.pathsep.join(str(ROOT / package / "src") for package in (HOBLOCK, HOFSI))
+
+# Tools whose next release may judge the same code differently.
+RUFF = "ruff==0.17.6"
+MYPY = "mypy==2.4.1"
+IMPORT_LINTER = "import-linter==2.16"
+
+
+def install_packages(session: nox.Session, *others: str) -> None:
+    """Install both packages with all their extras, editable, and the other requirements."""
+    session.install("-e", f"{HOBLOCK}[plot]", "-e", f"{HOFSI}[all]", *others)
+
+
+@nox.session
+def tests(session: nox.Session) -> None:
+    """Run all tests but the slow ones; add -m slow to run those."""
+    install_packages(session, "pytest", "hypothesis", "gmsh")
+    session.run("pytest", "-m", "not slow and not verification", *session.posargs)
+
+
+@nox.session(reuse_venv=False)
+def isolated(session: nox.Session) -> None:
+    """Build hoblock's wheel, install it alone without extras, and run its tests against it."""
+    session.install("build", "pytest")
+    wheels = Path(session.create_tmp()) / "wheels"
+    for old in wheels.glob("*.whl"):
+        old.unlink()
+    session.run("python", "-m", "build", "--wheel", "--outdir", str(wheels), HOBLOCK, silent=True)
+    (wheel,) = wheels.glob("hoblock-*.whl")
+    session.install(str(wheel))
+    # An empty pythonpath hides the sources, so that the tests see what a user installs.
+    session.run(
+        "pytest", "-o", "pythonpath=", "-m", "not slow", "tests/hoblock", *session.posargs, env={"PYTHONPATH": None}
+    )
+
+
+@nox.session
+def lint(session: nox.Session) -> None:
+    """Check the style of all Python files with ruff."""
+    session.install(RUFF)
+    session.run("ruff", "check", *(session.posargs or ["."]))
+
+
+@nox.session
+def types(session: nox.Session) -> None:
+    """Check the types of both packages with mypy --strict."""
+    session.install(MYPY, "numpy")
+    session.run("mypy", *session.posargs)
+
+
+@nox.session
+def imports(session: nox.Session) -> None:
+    """Check with import-linter that imports point only backwards along the data flow."""
+    session.install(IMPORT_LINTER)
+    session.run("lint-imports", *session.posargs, env={"PYTHONPATH": SOURCES})
+
+
+@nox.session
+def demo(session: nox.Session) -> None:
+    """Run the Wall-Ramm flap for 100 steps at order 4 into results/demo."""
+    install_packages(session)
+    settings = ["mesh.order=4", "time.dt=0.005", "time.end=0.5"]
+    changes = [word for setting in settings for word in ("--set", setting)]
+    session.run("hofsi", "run", "examples/wall_ramm.toml", "-o", "results/demo", *changes, *session.posargs)
+
+
+@nox.session
+def verification(session: nox.Session) -> None:
+    """Run the long comparisons with exact solutions and published values."""
+    install_packages(session, "pytest", "hypothesis")
+    session.run("pytest", "-m", "verification", "tests/verification", *session.posargs)
+
+
+@nox.session
+def benchmarks(session: nox.Session) -> None:
+    """Run every script in benchmarks/, or those given as arguments."""
+    scripts = [name for name in session.posargs if name.endswith(".py")]
+    options = [word for word in session.posargs if word not in scripts]
+    install_packages(session, "gmsh")
+    for script in scripts or sorted(str(path) for path in Path("benchmarks").glob("[!_]*.py")):
+        session.run("python", script, *options)
+
+
+@nox.session
+def docs(session: nox.Session) -> None:
+    """Check links and snippets of all Markdown pages."""
+    session.install("pytest")
+    session.run("pytest", "tests/test_docs.py", *session.posargs)
