@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,14 @@ from numpy.typing import NDArray
 from hoblock import topology_checks as checks
 from hoblock.curves import Curve, Displaced, NodalCurve
 from hoblock.curves import Reversed as ReversedCurve
-from hoblock.errors import CurveError, TopologyError
+from hoblock.errors import TopologyError
 from hoblock.grading import Grading, Uniform
 from hoblock.grading import Reversed as ReversedGrading
 from hoblock.orientation import orient
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Thing = TypeVar("Thing")
 
 __all__ = ["BlockStructure", "BlockTopology"]
 
@@ -90,6 +92,11 @@ class BlockTopology:
         except ValueError:
             raise TopologyError(f"no vertex named '{name}'{checks.did_you_mean(name, self.vertex_names)}") from None
 
+    def find_edge(self, first: int, second: int) -> int | None:
+        """Return the edge between two vertices, in either direction, or None."""
+        found = self._edge_of.get((first, second))
+        return self._edge_of.get((second, first)) if found is None else found
+
     def edge(self, first: int, second: int) -> tuple[int, bool]:
         """Return the edge between two vertices and whether it runs from ``first`` to ``second``.
 
@@ -112,10 +119,12 @@ class BlockTopology:
         return f"{self.vertex_names[first]}–{self.vertex_names[second]}"
 
     def block_name(self, block: int) -> str:
-        """Return the block's number, groups and vertices for messages."""
-        groups = [name for name, members in self.block_groups.items() if block in members]
+        """Return the block's place and vertices for messages, as in 'blocks.fluid[3] (a, b, c, d)'."""
         corners = ", ".join(self.vertex_names[v] for v in self.quads[block])
-        return f"block {block}{' of ' + '/'.join(groups) if groups else ''} ({corners})"
+        for name, members in self.block_groups.items():
+            if block in members:
+                return f"blocks.{name}[{int(np.flatnonzero(members == block)[0])}] ({corners})"
+        return f"block {block} ({corners})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,7 +270,8 @@ class BlockStructure:
         wanted = list(groups)
         for name in wanted:
             if name not in topology.block_groups:
-                raise TopologyError(f"no group of blocks named '{name}'{checks.did_you_mean(name, topology.block_groups)}")
+                known = checks.did_you_mean(name, topology.block_groups)
+                raise TopologyError(f"no group of blocks named '{name}'{known}")
         blocks = np.unique(np.concatenate([topology.block_groups[name] for name in wanted]))
         edges = np.unique(topology.block_edges[blocks])
         vertices = np.unique(topology.quads[blocks])
@@ -301,12 +311,18 @@ class BlockStructure:
             np.unique(self.topology.block_edges[np.concatenate([groups[name] for name in names])])
             for names in (list(first), list(second))
         ]
-        return np.intersect1d(*touching)
+        return np.asarray(np.intersect1d(touching[0], touching[1]), dtype=np.int64)
 
 
-def _directed(topology, pairs, vertex, place, reverse):  # type: ignore[no-untyped-def]
+def _directed(
+    topology: BlockTopology,
+    pairs: Mapping[tuple[str | int, str | int], Thing],
+    vertex: Callable[[str | int, str], int],
+    place: str,
+    reverse: Callable[[Thing], Thing],
+) -> dict[int, Thing]:
     """Attach things given by vertex pairs to directed edges, turning those given the other way round."""
-    result = {}
+    result: dict[int, Thing] = {}
     for (first, second), thing in pairs.items():
         edge, forward = topology.edge(vertex(first, place), vertex(second, place))
         if edge in result:
@@ -316,14 +332,9 @@ def _directed(topology, pairs, vertex, place, reverse):  # type: ignore[no-untyp
 
 
 def _check_ends(topology: BlockTopology, vertices: Array, curves: Mapping[int, Curve]) -> None:
-    size = float(np.ptp(vertices, axis=0).max())
+    names = topology.vertex_names
     for edge, curve in curves.items():
+        first, second = topology.edges[edge]
         ends = curve.points[[0, -1]] if isinstance(curve, NodalCurve) else curve(np.array([0.0, 1.0]))
-        for end, vertex in zip(ends, topology.edges[edge], strict=True):
-            gap = float(np.hypot(*(end - vertices[vertex])))
-            if not gap <= 1e-9 * size:
-                raise CurveError(
-                    f"curve on edge {topology.edge_name(edge)}: end point ({end[0]:g}, {end[1]:g}) is {gap:.2g} away from "
-                    f"vertex '{topology.vertex_names[vertex]}' at ({vertices[vertex][0]:g}, {vertices[vertex][1]:g}); "
-                    f"must coincide within {1e-9 * size:.1g}. Check the curve's direction."
-                )
+        checks.check_ends(ends, vertices, {names[first]: int(first), names[second]: int(second)},
+                          f"curve on edge {topology.edge_name(edge)}")

@@ -147,7 +147,7 @@ def _block_grid(cells: Index, columns: int, rows: int, order: int) -> Index:
     i, j = np.arange(columns * order + 1), np.arange(rows * order + 1)
     ci, cj = np.minimum(i // order, columns - 1), np.minimum(j // order, rows - 1)
     local = (j - cj * order)[:, None] * (order + 1) + (i - ci * order)
-    return cells[cj[:, None] * columns + ci, local]
+    return np.asarray(cells[cj[:, None] * columns + ci, local])
 
 
 def _edge_nodes(topology: BlockTopology, block_nodes: list[Index]) -> list[Index]:
@@ -306,7 +306,8 @@ def _nodal_points(curve: NodalCurve, plan: Layout, topology: BlockTopology, edge
     """Nodes of an interface edge: taken as they are for the same order, evaluated element by element for another."""
     count = int(topology.counts[edge])
     if curve.count != count:
-        raise CurveError(f"edge {topology.edge_name(edge)}: the nodal curve has {curve.count} elements; the edge has {count}.")
+        raise CurveError(f"edge {topology.edge_name(edge)}: the nodal curve has {curve.count} elements; the edge has "
+                         f"{count}.")
     if curve.order == plan.order:
         return curve.points
     inner = (gauss_lobatto(plan.order)[:-1] + 1.0) / 2.0
@@ -329,7 +330,7 @@ def raise_if_invalid(mesh: QuadMesh, structure: BlockStructure) -> None:
     worst = bad[0]
     block = structure.topology.block_name(int(plan.block_of_cell[worst.element]))
     raise InvalidMeshError(
-        f"{len(bad)} of {len(mesh.cells)} elements have det J <= 0 somewhere. Worst: element {worst.element} in {block}, "
-        f"det J = {worst.det_J:.3g} at (xi, eta) = ({worst.xi:.3g}, {worst.eta:.3g}), (x, y) = ({worst.x:.6g}, {worst.y:.6g}). "
-        f"{worst.reason}"
+        f"{len(bad)} of {len(mesh.cells)} elements have det J <= 0 somewhere. Worst: element {worst.element} in "
+        f"{block}, det J = {worst.det_J:.3g} at (xi, eta) = ({worst.xi:.3g}, {worst.eta:.3g}), "
+        f"(x, y) = ({worst.x:.6g}, {worst.y:.6g}). {worst.reason}"
     )

@@ -195,8 +195,8 @@ def invalid_elements(mesh: QuadMesh, subdivisions: int = 6) -> list[BadElement]:
     at = det_J.argmin(axis=1)
     places = (tensor_basis(gauss_lobatto(mesh.order), grid[at])[:, None, :] @ part.coordinates)[:, 0]
     found = [
-        BadElement(int(element), float(det_J[k, at[k]]), *map(float, grid[at[k]]), *map(float, places[k]),
-                   _reason(det_J[k], grid[at[k]]))
+        BadElement(int(element), float(det_J[k, at[k]]), float(grid[at[k], 0]), float(grid[at[k], 1]),
+                   float(places[k, 0]), float(places[k, 1]), _reason(det_J[k], grid[at[k]]))
         for k, element in enumerate(elements)
     ]
     return sorted(found, key=lambda bad: bad.det_J)
@@ -210,5 +210,6 @@ def _reason(det_J: Array, xi: Array) -> str:
     if det_J.min() > 0.0:
         return "det J is positive where sampled but too close to zero to be certain: move a vertex or soften the curve."
     if np.abs(xi).max() == 1.0 and np.abs(xi).min() == 1.0:
-        return "A corner angle is 180° or more there: move the block vertex."
-    return "Edges of its block cross or bend too far: move a vertex, split the block or soften the curve or the grading."
+        return "The angle at that corner is 180° or more: move a vertex of its block or soften its curves."
+    return ("Edges of its block cross or bend too far: move a vertex, split the block or soften the curve or the "
+            "grading.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -29,7 +29,7 @@ def _frozen(array: Array) -> Array:
     return array
 
 
-@lru_cache(maxsize=None)
+@cache
 def gauss_lobatto(order: int) -> Array:
     """Gauss–Lobatto–Legendre points, the nodes of an element of the given order.
 
@@ -59,7 +59,7 @@ def gauss_lobatto(order: int) -> Array:
     return _frozen((nodes - nodes[::-1]) / 2)
 
 
-@lru_cache(maxsize=None)
+@cache
 def equispaced(order: int) -> Array:
     """Equally spaced points of an element of the given order, exactly symmetric, shape (p + 1,)."""
     if order < 1:
@@ -68,7 +68,7 @@ def equispaced(order: int) -> Array:
     return _frozen((nodes - nodes[::-1]) / 2)
 
 
-@lru_cache(maxsize=None)
+@cache
 def gauss_legendre(count: int) -> tuple[Array, Array]:
     """Points and weights of the Gauss–Legendre rule on [-1, 1], exact to degree 2·count - 1."""
     points, weights = legendre.leggauss(count)
@@ -119,7 +119,7 @@ def lagrange_derivative(nodes: Array, x: Array) -> Array:
     return lagrange(nodes, x) @ differentiation_matrix(nodes)
 
 
-@lru_cache(maxsize=None)
+@cache
 def bernstein_from_lagrange(order: int) -> Array:
     """Matrix that turns values at equispaced points into Bernstein coefficients of the same order.
 
@@ -138,7 +138,7 @@ def bernstein_from_lagrange(order: int) -> Array:
     for k in range(order + 1):
         columns[:, k] = binomial * t**k * (1.0 - t) ** (order - k)
         binomial = binomial * (order - k) / (k + 1)
-    return _frozen(np.linalg.inv(columns))
+    return _frozen(np.asarray(np.linalg.inv(columns), dtype=float))
 
 
 def tensor_basis(nodes: Array, points: Array) -> Array:
@@ -168,7 +168,7 @@ def tensor_gradient(nodes: Array, points: Array) -> Array:
     return np.stack([along_xi, along_eta], axis=-1)
 
 
-@lru_cache(maxsize=None)
+@cache
 def tensor_quadrature(count: int) -> tuple[Array, Array]:
     """Gauss rule with count × count points on the square: points (count², 2), weights (count²,)."""
     x, w = gauss_legendre(count)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.errors import TopologyError
+from hoblock.errors import CurveError, TopologyError
 
 if TYPE_CHECKING:
     from hoblock.blocks import BlockTopology
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["chain_counts", "check_geometry", "did_you_mean", "quad_table", "vertex_table"]
+__all__ = ["chain_counts", "check_ends", "check_geometry", "did_you_mean", "quad_table", "vertex_table"]
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
@@ -133,6 +133,22 @@ def _check_conforming(topology: BlockTopology, vertices: Array, curved: frozense
             f"vertex '{topology.vertex_names[candidates[v]]}' lies on edge {topology.edge_name(int(outer[k]))}: the "
             "blocks do not conform. Split the block at that edge."
         )
+
+
+def check_ends(ends: Array, vertices: Array, names: Mapping[str, int], place: str) -> None:
+    """The ends (2, 2) of a curve must meet its first and second vertex, given as name: index.
+
+    The tolerance is 1e-9 times the size of the structure.
+    """
+    size = float(np.ptp(vertices, axis=0).max())
+    for end, (name, vertex) in zip(ends, names.items(), strict=True):
+        gap = float(np.hypot(*(end - vertices[vertex])))
+        if not gap <= 1e-9 * size:
+            raise CurveError(
+                f"{place}: end point ({end[0]:g}, {end[1]:g}) is {gap:.2g} away from vertex '{name}' at "
+                f"({vertices[vertex][0]:g}, {vertices[vertex][1]:g}); must coincide within {1e-9 * size:.1g}. "
+                "Check the curve's direction."
+            )
 
 
 def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], default: int) -> Index:
