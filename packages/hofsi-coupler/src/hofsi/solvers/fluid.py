@@ -17,6 +17,7 @@ from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.records import Counts
+from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
 from hofsi.timestepping.schemes import bdf_weights, extrapolation_weights
 
@@ -78,15 +79,17 @@ class FluidSolver:
         self._system_for: object = None
         self._geometry: tuple[Array, Geometry, Array, Array] | None = None
         self._constant: tuple[Array, float, Array] | None = None
+        self._enclosed: EnclosedRegions | None = None
+        self._stokes: tuple[Array, CondensedSystem, CondensedFactor] | None = None
 
     @property
     def convecting(self) -> bool:
         """Whether convection is part of the model."""
         return self.fluid.model == "navier-stokes"
 
-    def initial_state(self, time: float = 0.0) -> FluidState:
-        """State from the initial velocity of the case, or at rest."""
-        points = self.mesh.points
+    def initial_state(self, time: float = 0.0, points: Array | None = None) -> FluidState:
+        """State from the initial velocity of the case, or at rest, on the reference mesh or the given points."""
+        points = self.mesh.points if points is None else points
         velocity = np.zeros(points.shape)
         if self.fluid.initial_velocity is not None:
             for a, expression in enumerate(self.fluid.initial_velocity):
@@ -161,10 +164,28 @@ class FluidSolver:
         """Pattern of the linear systems under the constraints at these node positions."""
         constraints = self.boundary.constraints(points)
         if self._system is None or self._system_for is not constraints:
-            pinned = (2 * self.space.velocity_count,) if self.boundary.enclosed else ()
+            pinned = self.enclosed(points).pinned
             self._system = CondensedSystem(self.space.dofs, self.space.boundary, self.space.size, constraints, pinned)
             self._system_for = constraints
         return self._system
+
+    def enclosed(self, points: Array) -> EnclosedRegions:
+        """Regions whose pressure has no level; found once, for motion does not open a region."""
+        if self._enclosed is None:
+            self._enclosed = EnclosedRegions(self.space, self.boundary.constraints(points), self.pressure_work(points))
+        return self._enclosed
+
+    def pressure_work(self, points: Array) -> Array:
+        """What a unit pressure does to the velocity, ∫ ∂N/∂x over each element, shape (e, n, 2)."""
+        return EnclosedRegions.pressure_work(*self.geometry(points))
+
+    def stokes_factor(self, points: Array, rate: float) -> CondensedFactor:
+        """Factors of the matrix without convection, kept as long as the matrix."""
+        A, system = self.constant_matrices(points, rate), self.system(points)
+        if self._stokes is None or self._stokes[0] is not A or self._stokes[1] is not system:
+            self._stokes = (A, system, system.factorise(A))
+            self.counts.factorisations += 1
+        return self._stokes[2]
 
 
 class FluidStep:
@@ -184,6 +205,10 @@ class FluidStep:
         self._factor: CondensedFactor | None = None
         self._unknowns = np.concatenate([state.velocity.ravel(), state.pressure])
         self._residual: Array | None = None
+
+    def continue_from(self, other: FluidStep) -> None:
+        """Start the solution from that of another step, for example on the mesh of the last coupling iteration."""
+        self._unknowns = other._unknowns
 
     def _external(self, history: Array) -> Array:
         """Element load vectors of inertia, body force and given tractions."""
@@ -245,9 +270,13 @@ class FluidStep:
         start = self._unknowns[:n].reshape(-1, 2)
         velocity = self.solver.boundary.impose(start, self.points, self.mesh_velocity, interface, self.time)
         unknowns = np.concatenate([velocity.ravel(), self._unknowns[n:]])
+        enclosed = self.solver.enclosed(self.points)
+        if enclosed:
+            geometry, flux = self.solver.geometry(self.points)[0], self.solver.pressure_work(self.points)
+            enclosed.balance(self._load, velocity, geometry, flux)
         unknowns = self._solve_linear(unknowns) if self.linear else self._solve_newton(unknowns, max_iterations)
-        if self.solver.boundary.enclosed:
-            unknowns[n:] -= self._mean_pressure(unknowns[n:])
+        if enclosed and self._residual is not None:
+            enclosed.remove_mean(unknowns[n:], self._residual, geometry, flux)
         self._unknowns = unknowns
         return unknowns[:n].reshape(-1, 2), unknowns[n:]
 
@@ -255,12 +284,14 @@ class FluidStep:
         solver = self.solver
         if self._factor is None or self._matrix is None:
             self._matrix = solver.constant_matrices(self.points, self._rate)
-            if self._advective is not None:
+            if self._advective is None:
+                self._factor = solver.stokes_factor(self.points, self._rate)
+            else:
                 self._matrix = self._matrix.copy()
                 self._convection(self._matrix, self._advective)
-            solver.counts.assemblies += 1
-            self._factor = solver.system(self.points).factorise(self._matrix)
-            solver.counts.factorisations += 1
+                solver.counts.assemblies += 1
+                self._factor = solver.system(self.points).factorise(self._matrix)
+                solver.counts.factorisations += 1
         unknowns = unknowns + self._factor.solve(self._imbalance(self._matrix, unknowns))
         solver.counts.solves += 1
         self._residual = self._imbalance(self._matrix, unknowns)
@@ -339,11 +370,6 @@ class FluidStep:
         """Element residuals f - A u, shape (e, k)."""
         local = unknowns[self.solver.space.dofs]
         return np.asarray(self._load - (A @ local[:, :, None])[:, :, 0])
-
-    def _mean_pressure(self, pressure: Array) -> float:
-        geometry, _, _ = self.solver.geometry(self.points)
-        at_points = pressure[self.solver.space.pressure_cells] @ self.solver.space.pressure.N.T
-        return float(np.sum(geometry.weights * at_points) / np.sum(geometry.weights))
 
     def reaction(self) -> Array:
         """Nodal momentum residual of the last solution, shape (n, 2): the force of the boundary on the fluid."""

@@ -1,0 +1,218 @@
+"""From a case to a problem that can be simulated: only what the case needs is imported and built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from hoblock import BlockStructure, HoblockError, QuadMesh, det_jacobian_bounds, generate
+from hoblock.build import build_structure
+from numpy.typing import NDArray
+
+from hofsi import case
+from hofsi.errors import CaseError
+from hofsi.marching import FluidMarch, March, SolidMarch
+from hofsi.records import Clock, Counts
+
+if TYPE_CHECKING:
+    from hoblock.movers import Mover
+
+    from hofsi.coupling.interface import Interface
+    from hofsi.coupling.relaxation import Accelerator
+    from hofsi.motion import DrivenEdges
+    from hofsi.solvers.fluid import FluidSolver
+    from hofsi.solvers.solid import SolidSolver
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["FluidPart", "Problem", "SolidPart", "build"]
+
+
+@dataclass(frozen=True, eq=False)
+class FluidPart:
+    """The fluid's share of the mesh, and its solver."""
+
+    structure: BlockStructure
+    mesh: QuadMesh
+    solver: FluidSolver
+
+
+@dataclass(frozen=True, eq=False)
+class SolidPart:
+    """The solids' share of the mesh, and their solver."""
+
+    structure: BlockStructure
+    mesh: QuadMesh
+    solver: SolidSolver
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A case, built.
+
+    Attributes
+    ----------
+    case : Case
+    march : March
+    fluid : FluidPart or None
+    solid : SolidPart or None
+    interface : Interface or None
+    clock : Clock
+        Seconds by phase.
+    """
+
+    case: case.Case
+    march: March
+    fluid: FluidPart | None
+    solid: SolidPart | None
+    interface: Interface | None
+    clock: Clock
+
+    @property
+    def counts(self) -> dict[str, Counts]:
+        """What the solvers did, by field."""
+        parts = {"fluid": self.fluid, "solid": self.solid}
+        return {name: part.solver.counts for name, part in parts.items() if part is not None}
+
+
+def build(asked: case.Case) -> Problem:
+    """Build meshes, solvers and coupling.
+
+    Parameters
+    ----------
+    asked : Case
+
+    Raises
+    ------
+    HoblockError
+        If the mesh cannot be made.
+    CaseError
+        If the case asks for something that the mesh cannot give.
+    """
+    clock = Clock()
+    with clock.phase("build"):
+        structure = build_structure(asked.mesh)
+        solid_blocks = [name for solid in asked.solids for name in solid.blocks]
+        if asked.fluid is None:
+            return _solid_alone(asked, structure, solid_blocks, clock)
+        fluid = structure.restricted(asked.fluid.blocks)
+        mesh = _mesh(fluid, asked.mesh.order)
+        if not asked.solids:
+            return _fluid_alone(asked, fluid, mesh, clock)
+        return _coupled(asked, fluid, mesh, structure.restricted(solid_blocks), clock)
+
+
+def _mesh(structure: BlockStructure, order: int) -> QuadMesh:
+    try:
+        return generate(structure, order)
+    except HoblockError as error:
+        raise CaseError(str(error), "mesh") from error
+
+
+def _solid_alone(asked: case.Case, structure: BlockStructure, blocks: list[str], clock: Clock) -> Problem:
+    from hofsi.solvers.solid import SolidSolver
+
+    part = structure.restricted(blocks)
+    mesh = _mesh(part, asked.mesh.order)
+    solver = SolidSolver(mesh, asked.solids, asked.nonlinear)
+    return Problem(asked, SolidMarch(solver, clock), None, SolidPart(part, mesh, solver), None, clock)
+
+
+def _fluid_alone(asked: case.Case, structure: BlockStructure, mesh: QuadMesh, clock: Clock) -> Problem:
+    from hofsi.solvers.fluid import FluidSolver
+
+    assert asked.fluid is not None
+    _check_order(asked)
+    solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, np.zeros(0, dtype=np.int64))
+    motion = displacement = None
+    if asked.motions:
+        from hofsi.motion import MeshMotion
+
+        driven, displacement = _driven(asked, structure, mesh, ())
+        motion = MeshMotion(structure, mesh, _mover(asked.mover, structure, driven.vertices), driven)
+        reference = motion.reference
+    else:
+        from hofsi.motion import MeshState
+
+        reference = MeshState(structure, mesh, float(det_jacobian_bounds(mesh)[0].min()))
+    march = FluidMarch(solver, reference, motion, displacement, clock)
+    return Problem(asked, march, FluidPart(structure, mesh, solver), None, None, clock)
+
+
+def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: BlockStructure, clock: Clock) -> Problem:
+    from hofsi.coupling.interface import match_interface
+    from hofsi.coupling.partitioned import CoupledMarch
+    from hofsi.motion import MeshMotion
+    from hofsi.solvers.fluid import FluidSolver
+    from hofsi.solvers.solid import SolidSolver
+
+    assert asked.fluid is not None
+    _check_order(asked)
+    order = asked.mesh.order
+    interface = match_interface(fluid, solid, order)
+    solid_mesh = _mesh(solid, order)
+    driven, prescribed = _driven(asked, fluid, mesh, interface.fluid_edges)
+    motion = MeshMotion(fluid, mesh, _mover(asked.mover, fluid, driven.vertices), driven)
+    fluid_solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, interface.fluid)
+    solid_solver = SolidSolver(solid_mesh, asked.solids, asked.nonlinear)
+    march = CoupledMarch(
+        fluid_solver, solid_solver, interface, motion, prescribed, asked.coupling, _accelerator(asked.coupling), clock
+    )
+    parts = FluidPart(fluid, mesh, fluid_solver), SolidPart(solid, solid_mesh, solid_solver)
+    return Problem(asked, march, *parts, interface, clock)
+
+
+def _check_order(asked: case.Case) -> None:
+    if asked.mesh.order < 2:
+        raise CaseError(f"got {asked.mesh.order}; Taylor–Hood elements of a fluid need order 2 or higher.", "mesh.order")
+
+
+def _driven(
+    asked: case.Case, structure: BlockStructure, mesh: QuadMesh, wet: tuple[int, ...]
+) -> tuple[DrivenEdges, Callable[[float], Array]]:
+    """Driven edges of the fluid and their prescribed displacement as a function of time."""
+    from hofsi.motion import driven_edges
+
+    groups = structure.topology.edge_groups
+    moving = [int(edge) for motion in asked.motions for name in motion.on for edge in groups[name]]
+    driven = driven_edges(structure, mesh.order, tuple(dict.fromkeys([*wet, *moving])))
+    terms = []
+    for motion in asked.motions:
+        nodes = np.unique(np.concatenate([mesh.edge_nodes(name) for name in motion.on]))
+        terms.append((np.searchsorted(driven.nodes, nodes), *mesh.points[nodes].T, motion))
+
+    def displacement(time: float) -> Array:
+        result = np.zeros((len(driven.nodes), 2))
+        for rows, x, y, motion in terms:
+            for a, component in enumerate((motion.x, motion.y)):
+                result[rows, a] = component.evaluate(x=x, y=y, t=time)
+        return result
+
+    return driven, displacement
+
+
+def _mover(settings: case.MoverSettings, structure: BlockStructure, driven: Index) -> Mover:
+    if isinstance(settings, case.PseudoSolidSettings):
+        from hoblock.movers import PseudoSolid
+
+        return PseudoSolid(structure, driven, exponent=settings.exponent, poissons_ratio=settings.poissons_ratio)
+    from hoblock.movers import AngleOptimisation
+
+    return AngleOptimisation(
+        structure, driven, power=settings.power, sweeps=settings.sweeps, iterations=settings.iterations,
+        lower=settings.lower, upper=settings.upper, penalty=settings.penalty, radius=settings.radius,
+        projection=settings.projection, damping=settings.damping,
+    )
+
+
+def _accelerator(settings: case.CouplingSettings) -> Accelerator:
+    if settings.acceleration == "iqn-ils":
+        from hofsi.coupling.quasi_newton import InverseLeastSquares
+
+        return InverseLeastSquares(settings.reuse, settings.filter, settings.relaxation)
+    from hofsi.coupling.relaxation import Aitken, ConstantRelaxation
+
+    return Aitken(settings.relaxation) if settings.acceleration == "aitken" else ConstantRelaxation(settings.relaxation)

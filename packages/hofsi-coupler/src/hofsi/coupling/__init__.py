@@ -1,0 +1,1 @@
+"""Strong partitioned coupling of a fluid and a solid."""

@@ -1,0 +1,186 @@
+"""Dirichlet–Neumann coupling: the solid's displacement drives the fluid, the fluid's momentum residual loads the solid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi import case
+from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.interface import Interface
+from hofsi.coupling.predictors import predict
+from hofsi.coupling.relaxation import Accelerator
+from hofsi.errors import CouplingError
+from hofsi.motion import MeshMotion, MeshState
+from hofsi.records import Clock, CouplingRecord, State
+from hofsi.solvers.fluid import FluidSolver, FluidState, FluidStep
+from hofsi.solvers.solid import SolidSolver, SolidState, SolidStep
+from hofsi.timestepping.schemes import bdf_weights
+
+Array = NDArray[np.float64]
+
+__all__ = ["CoupledMarch"]
+
+_HISTORY = 4  # interface displacements kept: a cubic predictor needs four
+_NEWTON = 2  # Newton iterations of the fluid in one coupling iteration
+
+
+@dataclass
+class _Fields:
+    """What the last coupling iteration left behind."""
+
+    fluid: FluidStep
+    mesh: MeshState
+    displacement: Array
+
+
+class CoupledMarch:
+    """Strong coupling of a fluid and one or several solids.
+
+    Parameters
+    ----------
+    fluid : FluidSolver
+        Its interface nodes are those of ``interface.fluid``.
+    solid : SolidSolver
+    interface : Interface
+    motion : MeshMotion
+    prescribed : callable
+        time → displacement (k, 2) of the driven nodes, zero on the interface.
+    settings : CouplingSettings
+    accelerator : Accelerator
+    clock : Clock
+    """
+
+    def __init__(self, fluid: FluidSolver, solid: SolidSolver, interface: Interface, motion: MeshMotion,
+                 prescribed: Callable[[float], Array], settings: case.CouplingSettings, accelerator: Accelerator,
+                 clock: Clock) -> None:
+        self._fluid, self._solid, self._interface, self._motion = fluid, solid, interface, motion
+        self._prescribed, self._settings = prescribed, settings
+        self._accelerator, self._clock = accelerator, clock
+        self._test = ConvergenceTest(settings.tolerance)
+        self._rows = np.searchsorted(motion.driven.nodes, interface.fluid)
+
+    def initial(self, time: float) -> State:
+        """Initial fields; the fluid mesh fits the solid's initial displacement."""
+        solid = self._solid.initial_state(time)
+        d = solid.displacement[self._interface.solid]
+        mesh = self._motion.move(self._motion.reference, self._driven(d, time), time)
+        return State(self._fluid.initial_state(time, mesh.mesh.points), solid, mesh, (d,))
+
+    def _driven(self, d: Array, time: float) -> Array:
+        displacement = self._prescribed(time)
+        displacement[self._rows] = d
+        return displacement
+
+    def _move(self, current: MeshState, d: Array, time: float) -> MeshState:
+        with self._clock.phase("mesh"):
+            return self._motion.move(current, self._driven(d, time), time)
+
+    def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
+        """One time step, iterated until displacement and force have converged."""
+        fluid, solid, mesh = _parts(state)
+        order = min(2, len(state.interface), len(steps), len(fluid.velocities))
+        c = bdf_weights(steps[:order])
+        rest = np.tensordot(c[1:], np.stack(state.interface[:order]), axes=1)
+        predicted = predict(state.interface, steps, self._settings.predictor)
+        solid_step = self._solid.begin_step(solid, steps, time)
+        implicit = self._settings.geometry == "implicit"
+        linear = self._fluid.fluid.convection == "extrapolated" or not (
+            implicit or self._fluid.fluid.convection in ("newton", "picard"))
+
+        def begin(d: Array, before: FluidStep | None) -> tuple[FluidStep, MeshState]:
+            moved = self._move(mesh, d, time)
+            with self._clock.phase("fluid"):
+                step = self._fluid.begin_step(fluid, moved.mesh.points, steps, time, linear=linear)
+                if before is not None:
+                    step.continue_from(before)
+                return step, moved
+
+        fixed = None if implicit else begin(predicted, None)
+        last: FluidStep | None = None
+
+        def flow(d: Array) -> tuple[FluidStep, MeshState]:
+            nonlocal last
+            step, moved = fixed or begin(d, last)
+            with self._clock.phase("fluid"):
+                step.solve(c[0] * d + rest, max_iterations=_NEWTON if implicit else None)
+            last = step
+            return step, moved
+
+        self._test.begin_step(state.interface[0], _load(fluid.reaction, self._interface))
+        fields, record = self._iterate(predicted, flow, solid_step, f"coupling, t = {time:g}")
+        d = fields.displacement[self._interface.solid]
+        with self._clock.phase("solid"):
+            accepted = solid_step.accept(fields.displacement)
+        return State(fields.fluid.accept(), accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1])), record
+
+    def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
+        """Iterate steady flow and static equilibrium on meshes that fit the current displacement."""
+        fluid, solid, mesh = _parts(state)
+        time = fluid.time
+        solid_step = self._solid.begin_static(solid)
+        at_rest = np.zeros((len(self._interface.fluid), 2))
+        last: FluidStep | None = None
+
+        def flow(d: Array) -> tuple[FluidStep, MeshState]:
+            nonlocal last
+            moved = self._move(mesh, d, time)
+            with self._clock.phase("fluid"):
+                step = self._fluid.begin_steady(fluid, moved.mesh.points)
+                if last is not None:
+                    step.continue_from(last)
+                step.solve(at_rest)
+            last = step
+            return step, moved
+
+        self._test.begin_step(0.0, 0.0)
+        fields, record = self._iterate(state.interface[0], flow, solid_step, "steady coupling")
+        d = fields.displacement[self._interface.solid]
+        return State(fields.fluid.accept(), solid_step.accept(fields.displacement), fields.mesh, (d,)), record
+
+    def _iterate(self, d: Array, flow: Callable[[Array], tuple[FluidStep, MeshState]], solid_step: SolidStep,
+                 where: str) -> tuple[_Fields, CouplingRecord]:
+        """Fixed-point iteration d ↦ d̃ with acceleration."""
+        settings, interface = self._settings, self._interface
+        self._accelerator.begin_step()
+        displacement: Array | None = None
+        residuals = Residuals(np.inf, np.inf)
+        for iteration in range(1, settings.max_iterations + 1):
+            step, moved = flow(d)
+            with self._clock.phase("fluid"):
+                force = _load(step.reaction(), interface)
+            with self._clock.phase("solid"):
+                displacement = solid_step.solve(self._nodal(force), displacement)
+            image = displacement[interface.solid]
+            residual = image - d
+            if not (np.isfinite(residual).all() and np.isfinite(force).all()):
+                raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
+            residuals = self._test.residuals(image, residual, force)
+            if residuals.largest <= settings.tolerance:
+                self._accelerator.end_step()
+                record = CouplingRecord(iteration, residuals.displacement, residuals.force)
+                return _Fields(step, moved, displacement), record
+            with self._clock.phase("coupling"):
+                d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
+        raise CouplingError(
+            f"not converged after {settings.max_iterations} iterations: displacement residual {residuals.displacement:.2g}, "
+            f"force residual {residuals.force:.2g}, expected below {settings.tolerance:g}. Lower time.dt, raise "
+            "coupling.max_iterations, or use coupling.acceleration = \"iqn-ils\".", "max_iterations", where)
+
+    def _nodal(self, force: Array) -> Array:
+        nodal = np.zeros(self._solid.mesh.points.shape)
+        nodal[self._interface.solid] = force
+        return nodal
+
+
+def _load(reaction: Array, interface: Interface) -> Array:
+    """Force of the fluid on the solid at the interface nodes: minus the fluid's momentum residual."""
+    return -reaction[interface.fluid]
+
+
+def _parts(state: State) -> tuple[FluidState, SolidState, MeshState]:
+    assert state.fluid is not None and state.solid is not None and state.mesh is not None
+    return state.fluid, state.solid, state.mesh

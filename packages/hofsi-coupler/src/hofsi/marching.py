@@ -1,0 +1,110 @@
+"""A fluid or a solid alone: from one state to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi.records import Clock, CouplingRecord, State
+
+if TYPE_CHECKING:
+    from hofsi.motion import MeshMotion, MeshState
+    from hofsi.solvers.fluid import FluidSolver
+    from hofsi.solvers.solid import SolidSolver
+
+Array = NDArray[np.float64]
+
+__all__ = ["FluidMarch", "March", "SolidMarch"]
+
+
+class March(Protocol):
+    """Advances a state; the time loop knows nothing else."""
+
+    def initial(self, time: float) -> State:
+        """State at the start."""
+        ...
+
+    def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
+        """Return the state at ``time``; ``steps`` are the sizes of this step and of those before it, newest first."""
+        ...
+
+    def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
+        """Return the state at rest."""
+        ...
+
+
+class FluidMarch:
+    """A fluid alone, on a mesh at rest or one that moves as prescribed.
+
+    Parameters
+    ----------
+    solver : FluidSolver
+    reference : MeshState
+    motion : MeshMotion or None
+        None if the mesh stands still.
+    displacement : callable or None
+        time → displacement (k, 2) of the driven nodes.
+    clock : Clock
+    """
+
+    def __init__(self, solver: FluidSolver, reference: MeshState, motion: MeshMotion | None,
+                 displacement: Callable[[float], Array] | None, clock: Clock) -> None:
+        self._solver, self._reference, self._motion = solver, reference, motion
+        self._displacement, self._clock = displacement, clock
+
+    def initial(self, time: float) -> State:
+        """Initial velocity on the mesh at the start time."""
+        mesh = self._mesh(self._reference, time)
+        return State(fluid=self._solver.initial_state(time, mesh.mesh.points), mesh=mesh)
+
+    def _mesh(self, current: MeshState, time: float) -> MeshState:
+        if self._motion is None or self._displacement is None:
+            return current
+        with self._clock.phase("mesh"):
+            return self._motion.move(current, self._displacement(time), time)
+
+    def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
+        """Move the mesh and solve the fluid once."""
+        assert state.fluid is not None and state.mesh is not None
+        mesh = self._mesh(state.mesh, time)
+        with self._clock.phase("fluid"):
+            linear = self._solver.fluid.convection in ("auto", "extrapolated")
+            step = self._solver.begin_step(state.fluid, mesh.mesh.points, steps, time, linear=linear)
+            step.solve(np.zeros((0, 2)))
+            return State(fluid=step.accept(), mesh=mesh), None
+
+    def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
+        """Solve for the steady flow on the mesh as it is."""
+        assert state.fluid is not None and state.mesh is not None
+        with self._clock.phase("fluid"):
+            step = self._solver.begin_steady(state.fluid, state.mesh.mesh.points)
+            step.solve(np.zeros((0, 2)))
+            return State(fluid=step.accept(), mesh=state.mesh), None
+
+
+class SolidMarch:
+    """A solid alone."""
+
+    def __init__(self, solver: SolidSolver, clock: Clock) -> None:
+        self._solver, self._clock = solver, clock
+
+    def initial(self, time: float) -> State:
+        """Initial displacement and velocity."""
+        return State(solid=self._solver.initial_state(time))
+
+    def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
+        """Solve the solid once."""
+        assert state.solid is not None
+        with self._clock.phase("solid"):
+            step = self._solver.begin_step(state.solid, steps, time)
+            return State(solid=step.accept(step.solve(None))), None
+
+    def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
+        """Solve for static equilibrium."""
+        assert state.solid is not None
+        with self._clock.phase("solid"):
+            step = self._solver.begin_static(state.solid)
+            return State(solid=step.accept(step.solve(None))), None
