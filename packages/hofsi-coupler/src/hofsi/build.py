@@ -12,6 +12,7 @@ from hoblock.build import build_structure
 from numpy.typing import NDArray
 
 from hofsi import case
+from hofsi.case_checks import check_order
 from hofsi.errors import CaseError
 from hofsi.marching import FluidMarch, March, SolidMarch
 from hofsi.records import Clock, Counts
@@ -125,7 +126,7 @@ def _fluid_alone(asked: case.Case, structure: BlockStructure, mesh: QuadMesh, cl
     from hofsi.solvers.fluid import FluidSolver
 
     assert asked.fluid is not None
-    _check_order(asked)
+    check_order(asked)
     solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, np.zeros(0, dtype=np.int64))
     motion = displacement = None
     if asked.motions:
@@ -150,7 +151,7 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     from hofsi.solvers.solid import SolidSolver
 
     assert asked.fluid is not None
-    _check_order(asked)
+    check_order(asked)
     order = asked.mesh.order
     interface = match_interface(fluid, solid, order)
     solid_mesh = _mesh(solid, order)
@@ -163,11 +164,6 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     )
     parts = FluidPart(fluid, mesh, fluid_solver), SolidPart(solid, solid_mesh, solid_solver)
     return Problem(asked, march, *parts, interface, clock)
-
-
-def _check_order(asked: case.Case) -> None:
-    if asked.mesh.order < 2:
-        raise CaseError(f"got {asked.mesh.order}; Taylor–Hood elements of a fluid need order 2 or higher.", "mesh.order")
 
 
 def _driven(
@@ -204,7 +200,7 @@ def _mover(settings: case.MoverSettings, structure: BlockStructure, driven: Inde
     return AngleOptimisation(
         structure, driven, power=settings.power, sweeps=settings.sweeps, iterations=settings.iterations,
         lower=settings.lower, upper=settings.upper, penalty=settings.penalty, radius=settings.radius,
-        projection=settings.projection, damping=settings.damping,
+        projection=settings.projection, damping=settings.damping, predictor=settings.predictor, ideal=settings.ideal,
     )
 
 

@@ -1,0 +1,176 @@
+"""Settings of a scene: ``[mover]``, ``[time]``, ``[coupling]``, ``[nonlinear]``, ``[linear]``, ``[output]``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from hoblock.io.table import Table
+from hofsi.case import (
+    AngleOptimisationSettings,
+    CouplingSettings,
+    LinearSettings,
+    MoverSettings,
+    NonlinearSettings,
+    OutputSettings,
+    PseudoSolidSettings,
+    Steady,
+    TimeSettings,
+    Unsteady,
+)
+from hofsi.errors import CaseError
+from hofsi.io.names import check_name, choice
+
+__all__ = ["read_coupling", "read_linear", "read_mover", "read_nonlinear", "read_output", "read_time"]
+
+_WHOLE = 1e-6
+"""How far (end - start)/dt may be from a whole number, in steps."""
+
+
+def read_mover(table: Table) -> MoverSettings:
+    """Read ``[mover]``.
+
+    Raises
+    ------
+    SceneError
+        An unknown key, a value of the wrong type or out of range; so do all readers of this module.
+    """
+    kind = choice(table, "type", ("pseudo-solid", "angle-optimisation"), "pseudo-solid")
+    settings = _pseudo_solid(table) if kind == "pseudo-solid" else _angle_optimisation(table)
+    table.finish()
+    return settings
+
+
+def _pseudo_solid(table: Table) -> PseudoSolidSettings:
+    default = PseudoSolidSettings()
+    return PseudoSolidSettings(
+        exponent=table.number("exponent", default.exponent),
+        poissons_ratio=table.number("poissons_ratio", default.poissons_ratio, above=-1.0, below=0.5),
+    )
+
+
+def _angle_optimisation(table: Table) -> AngleOptimisationSettings:
+    form = choice(table, "form", ("robust", "published"), "robust")
+    default = AngleOptimisationSettings.as_published() if form == "published" else AngleOptimisationSettings()
+    power = table.integer("power", default.power, minimum=2)
+    if power % 2:
+        raise CaseError(f"got {power}; expected an even number, as 2 or 4", table.place_of("power"))
+    lower = table.number("lower", default.lower, above=0.0, below=1.0)
+    return AngleOptimisationSettings(
+        power=power,
+        sweeps=table.integer("sweeps", default.sweeps, minimum=1),
+        iterations=table.integer("iterations", default.iterations, minimum=1),
+        lower=lower,
+        upper=table.number("upper", default.upper, above=1.0),
+        penalty=table.number("penalty", default.penalty, minimum=0.0),
+        radius=table.number("radius", default.radius, positive=True),
+        projection=choice(table, "projection", ("every", "end"), default.projection),
+        damping=table.number("damping", default.damping, minimum=0.0),
+        predictor=table.boolean("predictor", default.predictor),
+        ideal=choice(table, "ideal", ("reference", "right"), default.ideal),
+    )
+
+
+def read_time(table: Table) -> TimeSettings:
+    """Read ``[time]``: ``steady = true``, or ``dt`` with ``end`` or ``steps``.
+
+    Raises
+    ------
+    CaseError
+        Both or neither, an end before the start, or an interval that is no whole number of steps.
+    """
+    if table.boolean("steady", False):
+        return _steady(table)
+    if not table.has("dt"):
+        raise CaseError("there is no time step; expected steady = true, or dt with end or steps", table.place_of("dt"))
+    dt = table.number("dt", positive=True)
+    start = table.number("start", 0.0)
+    if table.has("end") == table.has("steps"):
+        got = "both 'end' and 'steps'" if table.has("end") else "neither 'end' nor 'steps'"
+        raise CaseError(f"got {got}; expected exactly one of them", table.place)
+    steps = table.integer("steps", None, minimum=1)
+    time = _until_end(table, dt, start) if steps is None else Unsteady(dt, start, start + steps * dt, steps)
+    table.finish()
+    return time
+
+
+def _steady(table: Table) -> Steady:
+    for key in ("dt", "start", "end", "steps"):
+        if table.has(key):
+            raise CaseError("steady = true leaves no time; remove this key, or 'steady'", table.place_of(key))
+    table.finish()
+    return Steady()
+
+
+def _until_end(table: Table, dt: float, start: float) -> Unsteady:
+    end = table.number("end")
+    if end <= start:
+        raise CaseError(f"got {end:g}; expected an end after the start, {start:g}", table.place_of("end"))
+    steps = (end - start) / dt
+    if round(steps) < 1 or abs(steps - round(steps)) > _WHOLE * max(1.0, steps):
+        fitting = (end - start) / math.ceil(steps)
+        raise CaseError(
+            f"got {dt:g}, which makes {steps:.6g} steps from {start:g} to {end:g}; expected a whole number. "
+            f"Use dt = {fitting:.12g}, or give steps instead of end",
+            table.place_of("dt"),
+        )
+    return Unsteady(dt, start, end, round(steps))
+
+
+def read_coupling(table: Table, time: TimeSettings) -> CouplingSettings:
+    """Read ``[coupling]``; the geometry of a steady case is implicit unless something else is given."""
+    default = CouplingSettings(geometry="implicit" if isinstance(time, Steady) else "extrapolated")
+    settings = CouplingSettings(
+        acceleration=choice(table, "acceleration", ("iqn-ils", "aitken", "constant"), default.acceleration),
+        geometry=choice(table, "geometry", ("extrapolated", "implicit"), default.geometry),
+        predictor=table.integer("predictor", default.predictor, minimum=0, maximum=3),
+        tolerance=_tolerance(table, default.tolerance),
+        max_iterations=table.integer("max_iterations", default.max_iterations, minimum=1),
+        reuse=table.integer("reuse", default.reuse, minimum=0),
+        filter=table.number("filter", default.filter, minimum=0.0, below=1.0),
+        relaxation=table.number("relaxation", default.relaxation, above=0.0, maximum=1.0),
+    )
+    table.finish()
+    return settings
+
+
+def read_nonlinear(table: Table) -> NonlinearSettings:
+    """Read ``[nonlinear]``."""
+    default = NonlinearSettings()
+    settings = NonlinearSettings(
+        tolerance=_tolerance(table, default.tolerance),
+        max_iterations=table.integer("max_iterations", default.max_iterations, minimum=1),
+    )
+    table.finish()
+    return settings
+
+
+def read_linear(table: Table) -> LinearSettings:
+    """Read ``[linear]``."""
+    default = LinearSettings()
+    settings = LinearSettings(
+        solver=choice(table, "solver", ("direct", "amg"), default.solver),
+        tolerance=_tolerance(table, default.tolerance),
+    )
+    table.finish()
+    return settings
+
+
+def read_output(table: Table, quantities: Iterable[str]) -> OutputSettings:
+    """Read ``[output]``; ``quantities`` are the names that ``period_of`` may have."""
+    default = OutputSettings()
+    period_of = table.string("period_of", None)
+    if period_of is not None:
+        check_name(period_of, quantities, "quantities in [quantities]", table.place_of("period_of"))
+    settings = OutputSettings(
+        fields=table.boolean("fields", default.fields),
+        every=table.integer("every", default.every, minimum=1),
+        plots=table.boolean("plots", default.plots),
+        period_of=period_of,
+    )
+    table.finish()
+    return settings
+
+
+def _tolerance(table: Table, default: float) -> float:
+    return table.number("tolerance", default, above=0.0, below=1.0)

@@ -1,0 +1,178 @@
+"""Settings of a scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from hoblock.errors import SceneError
+from hoblock.io.table import Table
+from hofsi.case import (
+    AngleOptimisationSettings,
+    CouplingSettings,
+    LinearSettings,
+    NonlinearSettings,
+    OutputSettings,
+    PseudoSolidSettings,
+    Steady,
+    Unsteady,
+)
+from hofsi.errors import CaseError
+from hofsi.io.settings import read_coupling, read_linear, read_mover, read_nonlinear, read_output, read_time
+
+UNSTEADY = Unsteady(0.1, 0.0, 1.0, 10)
+
+
+def test_empty_tables_give_the_defaults() -> None:
+    assert read_mover(Table({})) == PseudoSolidSettings()
+    assert read_coupling(Table({}), UNSTEADY) == CouplingSettings()
+    assert read_nonlinear(Table({})) == NonlinearSettings()
+    assert read_linear(Table({})) == LinearSettings()
+    assert read_output(Table({}), ()) == OutputSettings()
+
+
+def test_a_steady_coupling_is_implicit() -> None:
+    assert read_coupling(Table({}), Steady()) == CouplingSettings(geometry="implicit")
+    assert read_coupling(Table({"geometry": "extrapolated"}), Steady()).geometry == "extrapolated"  # refused later on
+
+
+def test_pseudo_solid() -> None:
+    data = {"type": "pseudo-solid", "exponent": 2, "poissons_ratio": -0.5}
+    assert read_mover(Table(data)) == PseudoSolidSettings(2.0, -0.5)
+
+
+def test_angle_optimisation() -> None:
+    assert read_mover(Table({"type": "angle-optimisation"})) == AngleOptimisationSettings()
+    values: dict[str, Any] = {
+        "power": 4, "sweeps": 7, "iterations": 2, "lower": 0.25, "upper": 3.0, "penalty": 5.0, "radius": 0.05,
+        "projection": "end", "damping": 0.0,
+    }  # fmt: skip
+    assert read_mover(Table({"type": "angle-optimisation"} | values)) == AngleOptimisationSettings(**values)
+
+
+def test_coupling() -> None:
+    values: dict[str, Any] = {
+        "acceleration": "aitken", "geometry": "implicit", "predictor": 0, "tolerance": 1e-4, "max_iterations": 9,
+        "reuse": 0, "filter": 0.0, "relaxation": 1.0,
+    }  # fmt: skip
+    assert read_coupling(Table(values), UNSTEADY) == CouplingSettings(**values)
+
+
+def test_solvers_and_output() -> None:
+    assert read_nonlinear(Table({"tolerance": 1e-8, "max_iterations": 3})) == NonlinearSettings(1e-8, 3)
+    assert read_linear(Table({"solver": "amg", "tolerance": 1e-7})) == LinearSettings("amg", 1e-7)
+    output = {"fields": False, "every": 3, "plots": False, "period_of": "u"}
+    assert read_output(Table(output), ["u"]) == OutputSettings(False, 3, False, "u")
+
+
+@pytest.mark.parametrize(
+    ("data", "time"),
+    [
+        ({"steady": True}, Steady()),
+        ({"dt": 0.1, "end": 0.3}, Unsteady(0.1, 0.0, 0.3, 3)),
+        ({"steady": False, "dt": 0.005, "end": 4}, Unsteady(0.005, 0.0, 4.0, 800)),
+        ({"dt": 0.5, "steps": 3, "start": 1}, Unsteady(0.5, 1.0, 2.5, 3)),
+        ({"dt": 1e-3, "end": 30.0, "start": -0.25}, Unsteady(1e-3, -0.25, 30.0, 30250)),
+    ],
+)
+def test_time(data: dict[str, Any], time: Steady | Unsteady) -> None:
+    assert read_time(Table(data, "time")) == time
+
+
+@pytest.mark.parametrize(
+    ("data", "match"),
+    [
+        ({}, r"time.dt: there is no time step; expected steady = true, or dt with end or steps"),
+        ({"dt": 0.1}, r"time: got neither 'end' nor 'steps'; expected exactly one"),
+        ({"dt": 0.1, "end": 1, "steps": 10}, r"time: got both 'end' and 'steps'"),
+        ({"dt": 0.1, "end": 1, "start": 1}, r"time.end: got 1; expected an end after the start, 1"),
+        ({"dt": 0.3, "end": 1}, r"time.dt: got 0.3, which makes 3.33333 steps from 0 to 1; .* Use dt = 0.25, or"),
+        ({"dt": 5, "end": 1}, r"time.dt: got 5, which makes 0.2 steps .* Use dt = 1, or"),
+        ({"steady": True, "dt": 0.1}, r"time.dt: steady = true leaves no time; remove this key"),
+        ({"steady": True, "steps": 1}, r"time.steps: steady = true leaves no time"),
+    ],
+)
+def test_times_that_do_not_go_together(data: dict[str, Any], match: str) -> None:
+    with pytest.raises(CaseError, match=match):
+        read_time(Table(data, "time"))
+
+
+@pytest.mark.parametrize(
+    ("data", "match"),
+    [
+        ({"dt": 0, "end": 1}, r"time.dt: got 0; expected a number above 0"),
+        ({"dt": "fast", "end": 1}, r"time.dt: got the text 'fast'"),
+        ({"dt": 0.1, "steps": 0}, r"time.steps: got 0; expected an integer of at least 1"),
+        ({"dt": 0.1, "steps": 1.5}, r"time.steps: got the number 1.5; expected an integer"),
+        ({"steady": 1}, r"time.steady: got the number 1; expected true or false"),
+        ({"dt": 0.1, "ends": 1, "end": 1}, r"time.ends: unknown key. Did you mean 'end'"),
+        ({"steady": True, "stedy": True}, r"time.stedy: unknown key. Did you mean 'steady'"),
+    ],
+)
+def test_mistakes_of_time(data: dict[str, Any], match: str) -> None:
+    with pytest.raises(SceneError, match=match):
+        read_time(Table(data, "time"))
+
+
+@pytest.mark.parametrize(
+    ("data", "match"),
+    [
+        ({"type": "pseudosolid"}, r"mover.type: got 'pseudosolid'. Did you mean 'pseudo-solid'"),
+        ({"poissons_ratio": 0.5}, r"mover.poissons_ratio: got 0.5"),
+        ({"power": 2}, r"mover.power: unknown key"),
+        ({"type": "angle-optimisation", "power": 3}, r"mover.power: got 3; expected an even number"),
+        ({"type": "angle-optimisation", "exponent": 3}, r"mover.exponent: unknown key"),
+        ({"type": "angle-optimisation", "lower": 1.0}, r"mover.lower: got 1.0; .* below 1"),
+        ({"type": "angle-optimisation", "upper": 0.5}, r"mover.upper: got 0.5; .* above 1"),
+        ({"type": "angle-optimisation", "projection": "always"}, r"mover.projection: got 'always'"),
+        ({"type": "angle-optimisation", "radius": 0}, r"mover.radius: got 0"),
+        ({"type": "angle-optimisation", "damping": -1}, r"mover.damping: got -1"),
+    ],
+)
+def test_mistakes_of_the_mover(data: dict[str, Any], match: str) -> None:
+    with pytest.raises(SceneError, match=match):
+        read_mover(Table(data, "mover"))
+
+
+@pytest.mark.parametrize(
+    ("data", "match"),
+    [
+        ({"acceleration": "iqnils"}, r"coupling.acceleration: got 'iqnils'. Did you mean 'iqn-ils'"),
+        ({"geometry": "explicit"}, r"coupling.geometry: got 'explicit'"),
+        ({"predictor": 4}, r"coupling.predictor: got 4; expected an integer of at least 0 and of at most 3"),
+        ({"tolerance": 0}, r"coupling.tolerance: got 0"),
+        ({"tolerance": 1}, r"coupling.tolerance: got 1; .* below 1"),
+        ({"max_iterations": 0}, r"coupling.max_iterations: got 0"),
+        ({"reuse": -1}, r"coupling.reuse: got -1"),
+        ({"filter": -1e-3}, r"coupling.filter: got -0.001"),
+        ({"relaxation": 1.5}, r"coupling.relaxation: got 1.5; expected a number .*of at most 1"),
+        ({"relax": 0.5}, r"coupling.relax: unknown key. Did you mean 'relaxation'"),
+    ],
+)
+def test_mistakes_of_the_coupling(data: dict[str, Any], match: str) -> None:
+    with pytest.raises(SceneError, match=match):
+        read_coupling(Table(data, "coupling"), UNSTEADY)
+
+
+def test_mistakes_of_the_solvers() -> None:
+    with pytest.raises(SceneError, match=r"nonlinear.max_iterations: got 0"):
+        read_nonlinear(Table({"max_iterations": 0}, "nonlinear"))
+    with pytest.raises(SceneError, match=r"linear.solver: got 'lu'"):
+        read_linear(Table({"solver": "lu"}, "linear"))
+    with pytest.raises(SceneError, match=r"linear.restart: unknown key"):
+        read_linear(Table({"restart": 30}, "linear"))
+
+
+@pytest.mark.parametrize(
+    ("data", "match"),
+    [
+        ({"every": 0}, r"output.every: got 0"),
+        ({"fields": "yes"}, r"output.fields: got the text 'yes'; expected true or false"),
+        ({"period_of": "u_z"}, r"output.period_of: got the unknown name 'u_z'. Did you mean 'u_y'.*in \[quantities\]"),
+        ({"plot": True}, r"output.plot: unknown key. Did you mean 'plots'"),
+    ],
+)
+def test_mistakes_of_the_output(data: dict[str, Any], match: str) -> None:
+    with pytest.raises(SceneError, match=match):
+        read_output(Table(data, "output"), ["drag", "u_y"])

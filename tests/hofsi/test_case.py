@@ -1,0 +1,51 @@
+"""Plain data of a case."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import pytest
+
+from hofsi import case as module
+from hofsi.case import (
+    AngleOptimisationSettings,
+    Case,
+    CouplingSettings,
+    LinearSettings,
+    NonlinearSettings,
+    OutputSettings,
+    Point,
+    PseudoSolidSettings,
+)
+
+
+def test_all_classes_are_frozen() -> None:
+    classes = [cls for name in module.__all__ if isinstance(cls := getattr(module, name), type)]
+    assert len(classes) > 20
+    for cls in classes:
+        assert dataclasses.is_dataclass(cls), cls
+        assert cls.__dataclass_params__.frozen, cls  # type: ignore[attr-defined]
+
+
+def test_defaults_are_those_of_the_scene_format() -> None:
+    assert dataclasses.astuple(CouplingSettings()) == ("iqn-ils", "extrapolated", 2, 1e-6, 50, 10, 1e-3, 0.5)
+    assert dataclasses.astuple(NonlinearSettings()) == (1e-10, 25)
+    assert dataclasses.astuple(LinearSettings()) == ("direct", 1e-10)
+    assert dataclasses.astuple(OutputSettings()) == (True, 10, True, None)
+    assert dataclasses.astuple(PseudoSolidSettings()) == (-1.0, 0.3)
+    assert AngleOptimisationSettings().power == 2
+    assert AngleOptimisationSettings().upper is None
+
+
+def test_a_case_is_changed_by_replacing(read_changed: Callable[..., Case]) -> None:
+    case = read_changed()
+    coarse = dataclasses.replace(case, coupling=dataclasses.replace(case.coupling, tolerance=1e-3))
+    assert (case.coupling.tolerance, coarse.coupling.tolerance) == (1e-6, 1e-3)
+    assert coarse.mesh is case.mesh
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        case.title = "another"  # type: ignore[misc]
+
+
+def test_a_point_may_have_no_name() -> None:
+    assert Point(0.6, 0.2).vertex is None
