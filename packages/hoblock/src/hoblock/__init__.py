@@ -4,7 +4,8 @@ A block structure is a coarse mesh of quads whose edges carry geometry and gradi
 elements of any order. Importing this package loads NumPy only.
 """
 
-from hoblock.blocks import BlockStructure, BlockTopology
+from hoblock.blocks import BlockStructure
+from hoblock.build import build_structure
 from hoblock.curves import Arc, Curve, NodalCurve, Parametric
 from hoblock.errors import (
     CurveError,
@@ -12,6 +13,7 @@ from hoblock.errors import (
     GradingError,
     HoblockError,
     InvalidMeshError,
+    MeshFileError,
     MissingExtraError,
     MoverError,
     SceneError,
@@ -20,6 +22,7 @@ from hoblock.errors import (
 from hoblock.generate import changed_blocks, generate, regenerate
 from hoblock.grading import Cubic, Exponential, Grading, Quadratic, Uniform
 from hoblock.mesh import QuadMesh
+from hoblock.node_order import line_node_order, node_order
 from hoblock.quality import (
     det_jacobian,
     det_jacobian_bounds,
@@ -28,6 +31,7 @@ from hoblock.quality import (
     minimum_det_jacobian,
     scaled_jacobian,
 )
+from hoblock.topology import BlockTopology
 
 __version__ = "0.1.0"
 
@@ -44,6 +48,7 @@ __all__ = [
     "GradingError",
     "HoblockError",
     "InvalidMeshError",
+    "MeshFileError",
     "MissingExtraError",
     "MoverError",
     "NodalCurve",
@@ -53,13 +58,16 @@ __all__ = [
     "SceneError",
     "TopologyError",
     "Uniform",
+    "build_structure",
     "changed_blocks",
     "det_jacobian",
     "det_jacobian_bounds",
     "equiangular_skewness",
     "generate",
     "jacobian_ratio",
+    "line_node_order",
     "minimum_det_jacobian",
+    "node_order",
     "regenerate",
     "scaled_jacobian",
 ]

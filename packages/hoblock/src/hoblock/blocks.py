@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TypeVar
 
@@ -17,114 +17,14 @@ from hoblock.errors import TopologyError
 from hoblock.grading import Grading, Uniform
 from hoblock.grading import Reversed as ReversedGrading
 from hoblock.orientation import orient
+from hoblock.spelling import did_you_mean
+from hoblock.topology import BlockTopology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Thing = TypeVar("Thing")
 
-__all__ = ["BlockStructure", "BlockTopology"]
-
-
-def _read_only(array: NDArray[np.generic]) -> None:
-    array.setflags(write=False)
-
-
-@dataclass(frozen=True, eq=False)
-class BlockTopology:
-    """What does not change when blocks move: quads, directed edges, chains, element counts, names.
-
-    Attributes
-    ----------
-    vertex_names : tuple of str
-    quads : ndarray, shape (b, 4)
-        Vertices of each block, counter-clockwise, from the vertex both of whose edges leave it.
-    edges : ndarray, shape (m, 2)
-        First and second vertex of each block edge; opposite edges of a block are parallel.
-    block_edges : ndarray, shape (b, 4)
-        Edges of each block: bottom, right, top, left (sides 0 to 3).
-    chains : ndarray, shape (m,)
-        Chain of each edge.
-    counts : ndarray, shape (m,)
-        Number of elements along each edge, equal in a chain.
-    block_groups, edge_groups : mapping of str to ndarray
-        Named blocks and named edges.
-    """
-
-    vertex_names: tuple[str, ...]
-    quads: Index
-    edges: Index
-    block_edges: Index
-    chains: Index
-    counts: Index
-    block_groups: Mapping[str, Index]
-    edge_groups: Mapping[str, Index]
-    _edge_of: Mapping[tuple[int, int], int] = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        for array in (self.quads, self.edges, self.block_edges, self.chains, self.counts):
-            _read_only(array)
-        for groups in (self.block_groups, self.edge_groups):
-            for array in groups.values():
-                _read_only(array)
-        lookup = {(int(a), int(b)): k for k, (a, b) in enumerate(self.edges)}
-        object.__setattr__(self, "_edge_of", MappingProxyType(lookup))
-
-    @property
-    def blocks_per_edge(self) -> Index:
-        """Number of blocks at each edge: 1 on the boundary, 2 inside."""
-        return np.bincount(self.block_edges.ravel(), minlength=len(self.edges))
-
-    @property
-    def boundary_vertices(self) -> Index:
-        """Vertices on the boundary, ascending."""
-        return np.unique(self.edges[self.blocks_per_edge == 1])
-
-    def vertex(self, name: str) -> int:
-        """Return the index of a vertex by name.
-
-        Raises
-        ------
-        TopologyError
-            If there is no such vertex.
-        """
-        try:
-            return self.vertex_names.index(name)
-        except ValueError:
-            raise TopologyError(f"no vertex named '{name}'{checks.did_you_mean(name, self.vertex_names)}") from None
-
-    def find_edge(self, first: int, second: int) -> int | None:
-        """Return the edge between two vertices, in either direction, or None."""
-        found = self._edge_of.get((first, second))
-        return self._edge_of.get((second, first)) if found is None else found
-
-    def edge(self, first: int, second: int) -> tuple[int, bool]:
-        """Return the edge between two vertices and whether it runs from ``first`` to ``second``.
-
-        Raises
-        ------
-        TopologyError
-            If no block has that edge.
-        """
-        if (first, second) in self._edge_of:
-            return self._edge_of[first, second], True
-        if (second, first) in self._edge_of:
-            return self._edge_of[second, first], False
-        names = self.vertex_names
-        raise TopologyError(f"no block edge joins '{names[first]}' and '{names[second]}'. Name two corners of one side "
-                            "of a block.")
-
-    def edge_name(self, edge: int) -> str:
-        """Return 'first–second' with the names of the edge's vertices."""
-        first, second = self.edges[edge]
-        return f"{self.vertex_names[first]}–{self.vertex_names[second]}"
-
-    def block_name(self, block: int) -> str:
-        """Return the block's place and vertices for messages, as in 'blocks.fluid[3] (a, b, c, d)'."""
-        corners = ", ".join(self.vertex_names[v] for v in self.quads[block])
-        for name, members in self.block_groups.items():
-            if block in members:
-                return f"blocks.{name}[{int(np.flatnonzero(members == block)[0])}] ({corners})"
-        return f"block {block} ({corners})"
+__all__ = ["BlockStructure"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +51,7 @@ class BlockStructure:
 
     def __post_init__(self) -> None:
         vertices = np.array(self.vertices, dtype=float)
-        _read_only(vertices)
+        vertices.setflags(write=False)
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "curves", MappingProxyType(dict(self.curves)))
 
@@ -200,7 +100,7 @@ class BlockStructure:
         def vertex(key: str | int, place: str) -> int:
             name = str(key)
             if name not in number:
-                raise TopologyError(f"{place}: no vertex named '{name}'{checks.did_you_mean(name, names)}")
+                raise TopologyError(f"{place}: no vertex named '{name}'{did_you_mean(name, names)}")
             return number[name]
 
         grouped = blocks if isinstance(blocks, Mapping) else {"blocks": blocks}
@@ -213,11 +113,7 @@ class BlockStructure:
         curved = _directed(topology, curves or {}, vertex, "curves", ReversedCurve)
         graded = _directed(topology, gradings or {}, vertex, "gradings", ReversedGrading)
         checks.check_geometry(topology, positions, frozenset(curved))
-        named = {
-            name: np.array([topology.edge(vertex(a, f"edges.{name}"), vertex(b, f"edges.{name}"))[0] for a, b in pairs],
-                           dtype=np.int64)
-            for name, pairs in (edges or {}).items()
-        }
+        named = {name: _named(topology, pairs, vertex, f"edges.{name}") for name, pairs in (edges or {}).items()}
         asked = {} if isinstance(counts, int) else {
             (vertex(a, "counts"), vertex(b, "counts")): n for (a, b), n in counts.items()
         }
@@ -267,12 +163,7 @@ class BlockStructure:
             If a group does not exist.
         """
         topology = self.topology
-        wanted = list(groups)
-        for name in wanted:
-            if name not in topology.block_groups:
-                known = checks.did_you_mean(name, topology.block_groups)
-                raise TopologyError(f"no group of blocks named '{name}'{known}")
-        blocks = np.unique(np.concatenate([topology.block_groups[name] for name in wanted]))
+        blocks = self._blocks_of(groups)
         edges = np.unique(topology.block_edges[blocks])
         vertices = np.unique(topology.quads[blocks])
         new_block, new_edge, new_vertex = (
@@ -299,6 +190,17 @@ class BlockStructure:
         curves = {int(new_edge[edge]): curve for edge, curve in self.curves.items() if new_edge[edge] >= 0}
         return BlockStructure(part, self.vertices[vertices], curves, tuple(self.gradings[k] for k in edges))
 
+    def _blocks_of(self, groups: Iterable[str]) -> Index:
+        known = self.topology.block_groups
+        members = []
+        for name in groups:
+            if name not in known:
+                raise TopologyError(f"no group of blocks named '{name}'{did_you_mean(name, known)}")
+            members.append(known[name])
+        if not members:
+            raise TopologyError(f"no group of blocks was asked for; expected some of: {', '.join(known)}.")
+        return np.unique(np.concatenate(members))
+
     def with_edge_group(self, name: str, edges: Sequence[int] | Index) -> BlockStructure:
         """Return the structure with one more group of named edges."""
         groups = {**self.topology.edge_groups, name: np.array(edges, dtype=np.int64)}
@@ -306,12 +208,24 @@ class BlockStructure:
 
     def shared_edges(self, first: Iterable[str], second: Iterable[str]) -> Index:
         """Return the edges that have a block of one set of groups on one side and of the other on the other."""
-        groups = self.topology.block_groups
-        touching = [
-            np.unique(self.topology.block_edges[np.concatenate([groups[name] for name in names])])
-            for names in (list(first), list(second))
-        ]
+        touching = [np.unique(self.topology.block_edges[self._blocks_of(names)]) for names in (first, second)]
         return np.asarray(np.intersect1d(touching[0], touching[1]), dtype=np.int64)
+
+
+def _named(
+    topology: BlockTopology,
+    pairs: Iterable[tuple[str | int, str | int]],
+    vertex: Callable[[str | int, str], int],
+    place: str,
+) -> Index:
+    """Edges between pairs of vertices, each once."""
+    edges = np.array([topology.edge(vertex(a, place), vertex(b, place))[0] for a, b in pairs], dtype=np.int64)
+    if not edges.size:
+        raise TopologyError(f"{place}: no edges; expected at least one pair of vertices. Remove the name.")
+    found, uses = np.unique(edges, return_counts=True)
+    if (uses > 1).any():
+        raise TopologyError(f"{place}: edge {topology.edge_name(int(found[uses > 1][0]))} is listed twice. Remove one.")
+    return edges
 
 
 def _directed(

@@ -10,11 +10,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.blocks import BlockStructure, BlockTopology
+from hoblock.blocks import BlockStructure
 from hoblock.curves import Arc, Curve, Parametric
 from hoblock.errors import CurveError, GradingError, TopologyError
 from hoblock.grading import Cubic, Exponential, Grading, Quadratic, Uniform
 from hoblock.scene import ArcAbout, ArcThrough, CountScene, CurveScene, Formula, GradingScene, MeshScene, Path
+from hoblock.topology import BlockTopology
 from hoblock.topology_checks import check_ends
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.blocks import BlockStructure, BlockTopology
+from hoblock.blocks import BlockStructure
 from hoblock.curves import NodalCurve
 from hoblock.errors import CurveError, InvalidMeshError
 from hoblock.grading import Grading, element_corners
@@ -17,6 +17,7 @@ from hoblock.mesh import QuadMesh
 from hoblock.numbering import number_nodes
 from hoblock.quality import invalid_elements
 from hoblock.reference import gauss_lobatto
+from hoblock.topology import BlockTopology
 from hoblock.transfinite import TransfiniteWeights, interior_points
 
 Array = NDArray[np.float64]

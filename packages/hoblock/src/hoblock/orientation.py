@@ -38,7 +38,8 @@ def orient(quads: Index, names: Sequence[str]) -> tuple[Index, Index, Index, Ind
     Raises
     ------
     TopologyError
-        If an edge belongs to more than two blocks, two blocks lie on the same side of it, or a chain is a Möbius strip.
+        If an edge belongs to more than two blocks, or two blocks lie on the same side of it. (These make
+        the surface orientable, so that no chain can meet itself in the other direction.)
 
     References
     ----------
@@ -75,11 +76,6 @@ def orient(quads: Index, names: Sequence[str]) -> tuple[Index, Index, Index, Ind
                 if chains[other] < 0:
                     chains[other], positive[other] = count, direction
                     stack.append(other)
-                elif positive[other] != direction:
-                    raise TopologyError(
-                        f"the chain of opposite edges through {names[pairs[other][0]]}–{names[pairs[other][1]]} is a "
-                        "Möbius strip: it meets itself in the other direction. Check the order of the blocks' vertices."
-                    )
         count += 1
     edges = np.where(positive[:, None], pairs, pairs[:, ::-1])
     along = positive[edge_of_side] == forward  # side directed counter-clockwise

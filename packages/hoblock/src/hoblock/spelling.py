@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["listing", "suggestion"]
+__all__ = ["did_you_mean", "listing", "suggestion"]
 
 
 def listing(names: Iterable[str]) -> str:
@@ -27,3 +27,13 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 def _fold(name: str) -> str:
     return name.lower().replace("-", "_")
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return '; did you mean …?' with close matches, or the known names if there are few."""
+    names = [str(k) for k in known]
+    close = difflib.get_close_matches(name, names, n=3)
+    if close:
+        return f"; did you mean {' or '.join(repr(c) for c in close)}?"
+    listed = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+    return f"; known names: {listed}."

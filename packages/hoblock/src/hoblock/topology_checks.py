@@ -2,32 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.errors import CurveError, TopologyError
-
-if TYPE_CHECKING:
-    from hoblock.blocks import BlockTopology
+from hoblock.topology import BlockTopology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["chain_counts", "check_ends", "check_geometry", "did_you_mean", "quad_table", "vertex_table"]
-
-
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return '; did you mean …?' with close matches, or the known names if there are few."""
-    names = [str(k) for k in known]
-    close = difflib.get_close_matches(name, names, n=3)
-    if close:
-        return f"; did you mean {' or '.join(repr(c) for c in close)}?"
-    listed = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
-    return f"; known names: {listed}."
+__all__ = ["chain_counts", "check_ends", "check_geometry", "quad_table", "vertex_table"]
 
 
 def vertex_table(vertices: Mapping[str, Sequence[float]] | Array) -> tuple[tuple[str, ...], Array]:
@@ -80,6 +66,8 @@ def quad_table(
             if len(corners) != 4 or len(set(corners)) != 4:
                 raise TopologyError(f"{place}: {list(block)}; expected four different vertices.")
             quads.append(corners)
+        if len(quads) == first:
+            raise TopologyError(f"blocks.{name}: there are no blocks; expected at least one quad of four vertices.")
         members[name] = np.arange(first, len(quads))
     if not quads:
         raise TopologyError("there are no blocks; expected at least one quad of four vertices.")

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.blocks import BlockTopology
+from hoblock.topology import BlockTopology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

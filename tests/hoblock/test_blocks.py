@@ -1,0 +1,176 @@
+import numpy as np
+import pytest
+
+from hoblock.blocks import BlockStructure
+from hoblock.curves import Arc, Displaced, NodalCurve, Parametric
+from hoblock.errors import CurveError, TopologyError
+from hoblock.grading import Exponential, Reversed, Uniform
+
+VERTICES = {"a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (0, 1), "e": (1, 1), "f": (2, 1)}
+BLOCKS = {"left": [("a", "b", "e", "d")], "right": [("b", "c", "f", "e")]}
+
+
+def build(**options):
+    return BlockStructure.build(VERTICES, BLOCKS, **options)
+
+
+def test_names_groups_and_incidence():
+    structure = build(edges={"bottom": [("b", "a"), ("b", "c")], "seam": [("e", "b")]})
+    topology = structure.topology
+    assert topology.vertex_names == tuple("abcdef")
+    assert len(topology.edges) == 7
+    assert {name: list(blocks) for name, blocks in topology.block_groups.items()} == {"left": [0], "right": [1]}
+    assert {topology.edge_name(k) for k in topology.edge_groups["bottom"]} == {"a–b", "b–c"}
+    assert list(topology.blocks_per_edge[topology.edge_groups["seam"]]) == [2]
+    assert [topology.vertex_names[v] for v in topology.boundary_vertices] == list("abcdef")
+    assert topology.block_name(1) == "blocks.right[0] (b, c, f, e)"
+    edge, forward = topology.edge(topology.vertex("e"), topology.vertex("b"))
+    assert not forward
+    assert topology.edge_name(edge) == "b–e"
+
+
+def test_vertices_of_an_array_are_named_by_their_index():
+    structure = BlockStructure.build(np.array([(0, 0), (1, 0), (1, 1), (0, 1)]), [(0, 1, 2, 3)], counts=3)
+    assert structure.topology.vertex_names == ("0", "1", "2", "3")
+    assert list(structure.topology.counts) == [3, 3, 3, 3]
+    assert list(structure.topology.block_groups) == ["blocks"]
+
+
+def test_counts_spread_along_chains_only():
+    structure = build(counts={("a", "d"): 4, ("b", "c"): 3}, default_count=2)
+    topology = structure.topology
+    counts = {topology.edge_name(k): int(n) for k, n in enumerate(topology.counts)}
+    assert counts == {"a–b": 2, "d–e": 2, "b–c": 3, "e–f": 3, "a–d": 4, "b–e": 4, "c–f": 4}
+
+
+def test_curves_and_gradings_given_against_an_edge_are_turned():
+    bump = Parametric(lambda s: np.stack([1 - s, 0.2 * s * (1 - s) ** 3], axis=-1))
+    structure = build(curves={("b", "a"): bump}, gradings={("b", "a"): Exponential(2.0), ("b", "c"): Exponential(1.0)})
+    edge, forward = structure.topology.edge(0, 1)
+    assert forward
+    assert structure.gradings[edge] == Reversed(Exponential(2.0))
+    assert structure.gradings[structure.topology.edge(1, 2)[0]] == Exponential(1.0)
+    assert structure.gradings[structure.topology.edge(0, 3)[0]] == Uniform()
+    t = np.array([0.0, 0.25, 1.0])
+    np.testing.assert_allclose(structure.curves[edge](t), bump(1 - t))
+
+
+def test_everything_is_read_only():
+    structure = build()
+    for array in (structure.vertices, structure.topology.quads, structure.topology.counts):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    with pytest.raises(TypeError):
+        structure.curves[0] = Arc((0, 0), 1, 0, 1)
+
+
+def arc_structure():
+    vertices = {"a": (1, 0), "b": (2, 0), "c": (0, 2), "d": (0, 1)}
+    arcs = {("b", "c"): Arc.from_center((0, 0), (2, 0), (0, 2)), ("a", "d"): Arc.from_center((0, 0), (1, 0), (0, 1))}
+    return BlockStructure.build(vertices, [("a", "b", "c", "d")], counts=2, curves=arcs)
+
+
+def test_moved_shares_the_topology_and_displaces_curves_of_moved_ends_only():
+    structure = arc_structure()
+    outer, inner = structure.topology.edge(1, 2)[0], structure.topology.edge(0, 3)[0]
+    vertices = np.array(structure.vertices)
+    vertices[2] += (0.1, 0.3)
+    moved = structure.moved(vertices)
+    assert moved.topology is structure.topology
+    assert moved.gradings is structure.gradings
+    assert moved.curves[inner] is structure.curves[inner]
+    assert isinstance(moved.curves[outer], Displaced)
+    t = np.linspace(0, 1, 5)
+    np.testing.assert_allclose(moved.curves[outer](t), structure.curves[outer](t) + t[:, None] * [0.1, 0.3], atol=1e-15)
+    np.testing.assert_array_equal(structure.vertices[2], [0, 2])
+
+
+def test_moving_many_times_does_not_nest_displacements():
+    structure = arc_structure()
+    outer = structure.topology.edge(1, 2)[0]
+    there, back = np.array(structure.vertices), np.array(structure.vertices)
+    there[[1, 2]] += [(0.2, 0.1), (-0.1, 0.3)]
+    moved = structure
+    for _ in range(5):
+        moved = moved.moved(there).moved(back)
+    assert isinstance(moved.curves[outer], Displaced)
+    assert isinstance(moved.curves[outer].curve, Arc)
+    t = np.linspace(0, 1, 5)
+    np.testing.assert_allclose(moved.curves[outer](t), structure.curves[outer](t), atol=1e-15)
+
+
+def test_moved_takes_new_curves():
+    structure = arc_structure()
+    outer = structure.topology.edge(1, 2)[0]
+    points = np.array([(2, 0), (1.5, 1.5), (0, 2)])
+    nodal = NodalCurve(points, 1)
+    assert structure.moved(structure.vertices, {outer: nodal}).curves[outer] is nodal
+
+
+def test_restricted_keeps_names_directions_and_counts(layouts, rng):
+    structure = build(
+        counts={("a", "d"): 4, ("b", "c"): 3}, edges={"top": [("d", "e"), ("e", "f")], "out": [("c", "f")]},
+        gradings={("f", "c"): Exponential(1.0)}, curves={("b", "c"): layouts.bump((1, 0), (2, 0), 0.1)},
+    )
+    part = structure.restricted(["right"])
+    topology = part.topology
+    assert topology.vertex_names == ("b", "c", "e", "f")
+    assert list(topology.block_groups) == ["right"]
+    counts = {topology.edge_name(k): int(n) for k, n in enumerate(topology.counts)}
+    assert counts == {"b–c": 3, "e–f": 3, "b–e": 4, "c–f": 4}
+    assert [topology.edge_name(k) for k in topology.edge_groups["top"]] == ["e–f"]
+    assert [topology.edge_name(k) for k in part.curves] == ["b–c"]
+    assert part.gradings[topology.edge_groups["out"][0]] == Reversed(Exponential(1.0))
+    assert "out" not in structure.restricted(["left"]).topology.edge_groups
+    both = structure.restricted(["left", "right"])
+    np.testing.assert_array_equal(both.topology.quads, structure.topology.quads)
+
+
+def test_shared_edges_and_with_edge_group():
+    structure = build()
+    seam = structure.shared_edges(["left"], ["right"])
+    assert [structure.topology.edge_name(k) for k in seam] == ["b–e"]
+    named = structure.with_edge_group("interface", seam)
+    assert list(named.topology.edge_groups["interface"]) == list(seam)
+    assert "interface" not in structure.topology.edge_groups
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"edges": {"wall": [("a", "g")]}}, "edges.wall: no vertex named 'g'"),
+        ({"edges": {"wall": [("a", "e")]}}, "no block edge joins 'a' and 'e'. Name two corners of one side"),
+        ({"edges": {"wall": [("b", "a"), ("a", "d"), ("a", "b")]}}, "edges.wall: edge a–b is listed twice. Remove one"),
+        ({"edges": {"wall": []}}, "edges.wall: no edges; expected at least one pair of vertices. Remove the name"),
+        ({"counts": {("a", "x"): 2}}, "counts: no vertex named 'x'"),
+        ({"gradings": {("a", "b"): Uniform(), ("b", "a"): Uniform()}}, "gradings: edge a–b is given twice. Remove one"),
+        ({"curves": {("q", "b"): Arc((0, 0), 1, 0, 1)}}, "curves: no vertex named 'q'"),
+    ],
+)
+def test_bad_references(options, match):
+    with pytest.raises(TopologyError, match=match):
+        build(**options)
+
+
+def test_a_curve_that_misses_its_vertex():
+    arc = Arc((0.5, 0.0), 0.5, np.pi, -np.pi)
+    assert build(curves={("a", "b"): arc}).curves
+    match = (r"curve on edge a–b: end point \(1, .*\) is 1 away from vertex 'a' at \(0, 0\); must coincide "
+             r"within 2e-09\. Check the curve's direction")
+    with pytest.raises(CurveError, match=match):
+        build(curves={("b", "a"): arc})
+    with pytest.raises(CurveError, match="away from vertex 'a'"):
+        build(curves={("a", "b"): NodalCurve(np.array([(0, 0.1), (1, 0)]), 1)})
+
+
+def test_unknown_names_suggest_close_ones():
+    structure = build()
+    with pytest.raises(TopologyError, match="no vertex named 'A'"):
+        structure.topology.vertex("A")
+    with pytest.raises(TopologyError, match="no group of blocks named 'rigth'; did you mean 'right'"):
+        structure.restricted(["rigth"])
+
+
+def test_moved_refuses_another_number_of_vertices():
+    with pytest.raises(TopologyError, match=r"moved: vertices have shape \(5, 2\); expected \(6, 2\)"):
+        build().moved(np.zeros((5, 2)))

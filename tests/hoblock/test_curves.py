@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+from hoblock.curves import Arc, Displaced, NodalCurve, Parametric, Reversed
+from hoblock.errors import CurveError
+from hoblock.reference import gauss_lobatto
+
+T = np.linspace(0.0, 1.0, 11)
+
+
+def polar(radius, angle, center=(0.3, -0.2)):
+    return np.array([center[0] + radius * np.cos(angle), center[1] + radius * np.sin(angle)])
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0.2, 1.9), (1.9, 0.2), (3.0, -3.0), (-0.1, 0.1), (2.0, -1.0)])
+def test_arc_from_center_takes_the_shorter_way_at_constant_speed(start, stop):
+    arc = Arc.from_center((0.3, -0.2), polar(0.7, start), polar(0.7, stop))
+    points = arc(T)
+    np.testing.assert_allclose(points[[0, -1]], [polar(0.7, start), polar(0.7, stop)], atol=1e-15)
+    np.testing.assert_allclose(np.hypot(*(points - [0.3, -0.2]).T), 0.7, atol=1e-15)
+    assert abs(arc.opening) < np.pi
+    np.testing.assert_allclose(np.diff(T) * abs(arc.opening),
+                               2 * np.arcsin(np.hypot(*np.diff(points, axis=0).T) / 1.4), atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("start", "middle", "stop"),
+    [(0.0, 1.0, 2.0), (2.0, 1.0, 0.0), (0.0, 3.0, 6.0), (0.0, -2.0, 1.0), (2.9, 3.2, -2.9), (-2.9, 0.0, 2.9)],
+)
+def test_arc_through_passes_its_middle_point_and_no_further(start, middle, stop):
+    arc = Arc.through(polar(1.3, start), polar(1.3, middle), polar(1.3, stop))
+    np.testing.assert_allclose(arc([0.0, 1.0]), [polar(1.3, start), polar(1.3, stop)], atol=1e-14)
+    np.testing.assert_allclose(arc.center, (0.3, -0.2), atol=1e-14)
+    t = ((middle - arc.start) / arc.opening) % (2 * np.pi / abs(arc.opening))
+    assert 0 < t < 1
+    np.testing.assert_allclose(arc([t])[0], polar(1.3, middle), atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: Arc.from_center((0, 0), (1, 0), (0, 1.1)), "end points are 1 and 1.1 away from the centre"),
+        (lambda: Arc.from_center((0, 0), (0, 0), (0, 0)), "must be equal and positive"),
+        (lambda: Arc.from_center((0, 0), (1, 0), (-1, 0)), "lie opposite each other, so two arcs fit. Give a"),
+        (lambda: Arc.through((0, 0), (1, 1), (2, 2)), "three points lie on a line. Leave the curve out"),
+        (lambda: Arc.through((0, 0), (0, 0), (2, 2)), "three points lie on a line"),
+        (lambda: Parametric(lambda t: t)(T), r"parametric curve: returned shape \(11,\) for 11 parameters"),
+        (lambda: Parametric(lambda t: np.stack([t, np.where(t > 0.45, np.inf, t)], -1))(T), "not finite at t = 0.5"),
+        (lambda: NodalCurve(np.zeros((6, 2)), 2), r"points have shape \(6, 2\); expected \(n\*2 \+ 1, 2\)"),
+        (lambda: NodalCurve(np.zeros((1, 2)), 1), r"points have shape \(1, 2\)"),
+        (lambda: NodalCurve(np.zeros((5, 3)), 2), r"points have shape \(5, 3\)"),
+    ],
+)
+def test_errors(make, match):
+    with pytest.raises(CurveError, match=match):
+        make()
+
+
+def test_reversed_walks_the_other_way():
+    arc = Arc((0.0, 0.0), 1.0, 0.0, 1.0)
+    np.testing.assert_allclose(Reversed(arc)(T), arc(1.0 - T))
+    np.testing.assert_allclose(Reversed(Reversed(arc))(T), arc(T), atol=1e-15)
+
+
+def test_displaced_blends_the_motion_of_the_ends():
+    arc = Arc((0.0, 0.0), 1.0, 0.0, 1.0)
+    moved = Displaced(arc, (0.1, 0.2), (-0.3, 0.4))(T)
+    np.testing.assert_allclose(moved[0] - arc([0.0])[0], [0.1, 0.2], atol=1e-15)
+    np.testing.assert_allclose(moved[-1] - arc([1.0])[0], [-0.3, 0.4], atol=1e-15)
+    np.testing.assert_allclose(moved[5] - arc([0.5])[0], [-0.1, 0.3], atol=1e-15)
+
+
+def test_nodal_curve_interpolates_its_nodes_and_is_a_polynomial_in_each_element(rng):
+    order, count = 3, 4
+    points = rng.standard_normal((order * count + 1, 2))
+    curve = NodalCurve(points, order)
+    assert curve.count == count
+    t = np.append(((np.arange(count)[:, None] + (gauss_lobatto(order)[:-1] + 1) / 2) / count).ravel(), 1.0)
+    np.testing.assert_allclose(curve(t), points, atol=1e-12)
+    inside = np.linspace(0.26, 0.49, 9)  # all in the second element: a cubic
+    differences = np.diff(curve(inside), n=4, axis=0)
+    np.testing.assert_allclose(differences, 0.0, atol=1e-11)
+
+
+def test_nodal_curve_keeps_its_points_without_a_copy():
+    points = np.zeros((5, 2))
+    assert NodalCurve(points, 2).points is points
