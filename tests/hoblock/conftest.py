@@ -71,10 +71,13 @@ class Layouts:
         quads = [(k, sectors + k, sectors + j, j) for k, j in enumerate(following)]
         rings = {
             (shift + k, shift + j): Arc.from_center((0.0, 0.0), vertices[shift + k], vertices[shift + j])
-            for shift in (0, sectors) for k, j in enumerate(following)
+            for shift in (0, sectors)
+            for k, j in enumerate(following)
         }
-        names = {"inner": [(k, j) for k, j in enumerate(following)],
-                 "outer": [(sectors + k, sectors + j) for k, j in enumerate(following)]}
+        names = {
+            "inner": [(k, j) for k, j in enumerate(following)],
+            "outer": [(sectors + k, sectors + j) for k, j in enumerate(following)],
+        }
         return BlockStructure.build(vertices, quads, counts=counts, curves=rings, edges=names)
 
     @staticmethod

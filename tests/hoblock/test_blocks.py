@@ -109,8 +109,10 @@ def test_moved_takes_new_curves():
 
 def test_restricted_keeps_names_directions_and_counts(layouts, rng):
     structure = build(
-        counts={("a", "d"): 4, ("b", "c"): 3}, edges={"top": [("d", "e"), ("e", "f")], "out": [("c", "f")]},
-        gradings={("f", "c"): Exponential(1.0)}, curves={("b", "c"): layouts.bump((1, 0), (2, 0), 0.1)},
+        counts={("a", "d"): 4, ("b", "c"): 3},
+        edges={"top": [("d", "e"), ("e", "f")], "out": [("c", "f")]},
+        gradings={("f", "c"): Exponential(1.0)},
+        curves={("b", "c"): layouts.bump((1, 0), (2, 0), 0.1)},
     )
     part = structure.restricted(["right"])
     topology = part.topology
@@ -155,8 +157,10 @@ def test_bad_references(options, match):
 def test_a_curve_that_misses_its_vertex():
     arc = Arc((0.5, 0.0), 0.5, np.pi, -np.pi)
     assert build(curves={("a", "b"): arc}).curves
-    match = (r"curve on edge a–b: end point \(1, .*\) is 1 away from vertex 'a' at \(0, 0\); must coincide "
-             r"within 2e-09\. Check the curve's direction")
+    match = (
+        r"curve on edge a–b: end point \(1, .*\) is 1 away from vertex 'a' at \(0, 0\); must coincide "
+        r"within 2e-09\. Check the curve's direction"
+    )
     with pytest.raises(CurveError, match=match):
         build(curves={("b", "a"): arc})
     with pytest.raises(CurveError, match="away from vertex 'a'"):

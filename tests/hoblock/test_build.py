@@ -15,7 +15,8 @@ from hoblock.scene import ArcAbout, ArcThrough, CountScene, CurveScene, Formula,
 # A strip of three blocks: 0–1–2–3 below, 4–5–6–7 above.
 VERTICES = {"abcdefgh"[k]: (float(k % 4), float(k // 4)) for k in range(8)}
 STRIP = MeshScene(
-    order=3, vertices=VERTICES,
+    order=3,
+    vertices=VERTICES,
     blocks={"left": (("a", "b", "f", "e"), ("b", "c", "g", "f")), "right": (("c", "d", "h", "g"),)},
     edges={"bottom": (("a", "b", "c", "d"),), "ends": (("a", "e"), ("h", "d"))},
     elements=2,
@@ -63,8 +64,11 @@ def test_arcs_along_a_path_follow_each_edge():
     vertices = {name: (np.cos(t), np.sin(t)) for name, t in zip("pqrs", (0.0, 1.0, 2.0, 3.0), strict=True)}
     outer = {name.upper(): (2 * x, 2 * y) for name, (x, y) in vertices.items()}
     blocks = {"ring": tuple((a, a.upper(), b.upper(), b) for a, b in ("pq", "qr", "rs"))}
-    shapes = (curve(["pqrs"], ArcAbout((0.0, 0.0))), curve(["SR", "PQ"], ArcAbout((0.0, 0.0)), 1),
-              curve(["QR"], ArcThrough((2 * np.cos(1.3), 2 * np.sin(1.3))), 2))
+    shapes = (
+        curve(["pqrs"], ArcAbout((0.0, 0.0))),
+        curve(["SR", "PQ"], ArcAbout((0.0, 0.0)), 1),
+        curve(["QR"], ArcThrough((2 * np.cos(1.3), 2 * np.sin(1.3))), 2),
+    )
     structure = build_structure(MeshScene(4, {**vertices, **outer}, blocks, {"in": (tuple("pqrs"),)}, shapes))
     mesh = generate(structure, 6)
     radius = np.hypot(*mesh.points.T)
@@ -85,8 +89,12 @@ def test_parametric_curves_and_gradings_run_along_the_path():
 
 
 def test_gradings_of_each_kind():
-    gradings = (grading(["ab"], "quadratic", 0.3), grading(["bc"], "cubic", 0.4, 1),
-                grading(["hd", "ae"], "exponential", 2.0, 2), grading(["ef"], "uniform", 0.0, 3))
+    gradings = (
+        grading(["ab"], "quadratic", 0.3),
+        grading(["bc"], "cubic", 0.4, 1),
+        grading(["hd", "ae"], "exponential", 2.0, 2),
+        grading(["ef"], "uniform", 0.0, 3),
+    )
     structure = build_structure(replace(STRIP, gradings=gradings))
     s = np.linspace(0, 1, 7)
     for first, second, expected in (
@@ -104,33 +112,66 @@ def test_gradings_of_each_kind():
 @pytest.mark.parametrize(
     ("changes", "error", "match"),
     [
-        ({"edges": {"wall": (("a", "c"),)}}, TopologyError,
-         r"^mesh\.edges\.wall: no block has a side from 'a' to 'c'; a path walks along block edges, naming every"),
-        ({"curves": (curve(["af"], ArcAbout((0, 0)), 3),)}, TopologyError,
-         r"^mesh\.curve\[3\]: no block has a side from 'a' to 'f'"),
+        (
+            {"edges": {"wall": (("a", "c"),)}},
+            TopologyError,
+            r"^mesh\.edges\.wall: no block has a side from 'a' to 'c'; a path walks along block edges, naming every",
+        ),
+        (
+            {"curves": (curve(["af"], ArcAbout((0, 0)), 3),)},
+            TopologyError,
+            r"^mesh\.curve\[3\]: no block has a side from 'a' to 'f'",
+        ),
         ({"counts": (count(["ag"], 2, 1),)}, TopologyError, r"^mesh\.count\[1\]: no block has a side from 'a' to 'g'"),
         ({"gradings": (grading(["bd"], "cubic", 0.2, 5),)}, TopologyError, r"^mesh\.grading\[5\]: no block has a side"),
-        ({"curves": (curve(["ab"], ArcAbout((0.4, 1)), 2),)}, CurveError,
-         r"^mesh\.curve\[2\] on a–b: arc about \(0.4, 1\): the end points are .* away from the centre"),
-        ({"curves": (curve(["abc"], ArcThrough((1.5, 0)), 1),)}, CurveError,
-         r"^mesh\.curve\[1\] on a–b: arc through \(1.5, 0\): the three points lie on a line"),
-        ({"curves": (curve(["ab"], formula("s", "0.1")),)}, CurveError,
-         r"^mesh\.curve\[0\] on a–b: curve: end point \(0, 0.1\) is 0.1 away from vertex 'a' at \(0, 0\); must "
-         r"coincide within 3e-09\. Check the curve's direction"),
-        ({"curves": (curve(["ba"], formula("s", "0")),)}, CurveError,
-         r"^mesh\.curve\[0\] on b–a: .* away from vertex 'b'"),
-        ({"curves": (curve(["ab"], formula("s", "0"), 4), curve(["ba"], formula("1 - s", "0"), 6))}, TopologyError,
-         r"^mesh\.curve\[6\]: edge b–a has a second curve: mesh\.curve\[4\] gives one already. Remove one"),
-        ({"gradings": (grading(["abc"], "cubic", 0.2), grading(["cb"], "cubic", 0.2, 1))}, TopologyError,
-         r"^mesh\.grading\[1\]: edge c–b has a second grading: mesh\.grading\[0\] gives one already"),
+        (
+            {"curves": (curve(["ab"], ArcAbout((0.4, 1)), 2),)},
+            CurveError,
+            r"^mesh\.curve\[2\] on a–b: arc about \(0.4, 1\): the end points are .* away from the centre",
+        ),
+        (
+            {"curves": (curve(["abc"], ArcThrough((1.5, 0)), 1),)},
+            CurveError,
+            r"^mesh\.curve\[1\] on a–b: arc through \(1.5, 0\): the three points lie on a line",
+        ),
+        (
+            {"curves": (curve(["ab"], formula("s", "0.1")),)},
+            CurveError,
+            r"^mesh\.curve\[0\] on a–b: curve: end point \(0, 0.1\) is 0.1 away from vertex 'a' at \(0, 0\); must "
+            r"coincide within 3e-09\. Check the curve's direction",
+        ),
+        (
+            {"curves": (curve(["ba"], formula("s", "0")),)},
+            CurveError,
+            r"^mesh\.curve\[0\] on b–a: .* away from vertex 'b'",
+        ),
+        (
+            {"curves": (curve(["ab"], formula("s", "0"), 4), curve(["ba"], formula("1 - s", "0"), 6))},
+            TopologyError,
+            r"^mesh\.curve\[6\]: edge b–a has a second curve: mesh\.curve\[4\] gives one already. Remove one",
+        ),
+        (
+            {"gradings": (grading(["abc"], "cubic", 0.2), grading(["cb"], "cubic", 0.2, 1))},
+            TopologyError,
+            r"^mesh\.grading\[1\]: edge c–b has a second grading: mesh\.grading\[0\] gives one already",
+        ),
         ({"gradings": (grading(["ab", "ba"], "cubic", 0.2),)}, TopologyError, "the same entry gives it twice"),
-        ({"gradings": (grading(["ab"], "quadratic", 1.0, 7),)}, GradingError,
-         r"^mesh\.grading\[7\]: quadratic grading: m is 1"),
-        ({"counts": (count(["ab"], 2), count(["ef"], 3, 1))}, TopologyError,
-         r"^mesh\.count\[1\]: 3 elements on edge e–f, but mesh\.count\[0\] asks for 2 on edge a–b\. Both belong to "
-         r"one chain of opposite edges \(.*\), which needs one number"),
-        ({"blocks": {"body": (("a", "b", "f", "e"), ("b", "f", "g", "c"), ("c", "d", "h", "g"))}}, TopologyError,
-         r"^mesh: edge b–f has two blocks on the same side"),
+        (
+            {"gradings": (grading(["ab"], "quadratic", 1.0, 7),)},
+            GradingError,
+            r"^mesh\.grading\[7\]: quadratic grading: m is 1",
+        ),
+        (
+            {"counts": (count(["ab"], 2), count(["ef"], 3, 1))},
+            TopologyError,
+            r"^mesh\.count\[1\]: 3 elements on edge e–f, but mesh\.count\[0\] asks for 2 on edge a–b\. Both belong to "
+            r"one chain of opposite edges \(.*\), which needs one number",
+        ),
+        (
+            {"blocks": {"body": (("a", "b", "f", "e"), ("b", "f", "g", "c"), ("c", "d", "h", "g"))}},
+            TopologyError,
+            r"^mesh: blocks\.body\[1\] \(b, f, g, c\) is clockwise or inverted \(signed area .*\)\. List its vert",
+        ),
         ({"vertices": {**VERTICES, "f": (3.5, 0.5)}}, TopologyError, r"^mesh: blocks\.left\[\d\] \(.*\)"),
         ({"vertices": {**VERTICES, "z": (9.0, 9.0)}}, TopologyError, r"^mesh: vertices 'z' belong to no block"),
     ],
@@ -153,7 +194,8 @@ def test_one_count_given_twice_is_no_conflict():
 
 def test_scene_files(tmp_path):
     path = tmp_path / "quarter.toml"
-    path.write_text("""
+    path.write_text(
+        """
         [constants]
         r = 0.5
         [mesh]
@@ -181,7 +223,9 @@ def test_scene_files(tmp_path):
         on = [["a", "b"], ["d", "c"]]
         kind = "exponential"
         a = 1
-    """, encoding="utf-8")
+    """,
+        encoding="utf-8",
+    )
     structure = build_structure(load_mesh_scene(path, ["constants.r=0.75"]))
     assert isinstance(structure.curves[structure.topology.edge_groups["hole"][0]], Arc)
     mesh = generate(structure, 4)

@@ -19,8 +19,9 @@ def test_arc_from_center_takes_the_shorter_way_at_constant_speed(start, stop):
     np.testing.assert_allclose(points[[0, -1]], [polar(0.7, start), polar(0.7, stop)], atol=1e-15)
     np.testing.assert_allclose(np.hypot(*(points - [0.3, -0.2]).T), 0.7, atol=1e-15)
     assert abs(arc.opening) < np.pi
-    np.testing.assert_allclose(np.diff(T) * abs(arc.opening),
-                               2 * np.arcsin(np.hypot(*np.diff(points, axis=0).T) / 1.4), atol=1e-14)
+    np.testing.assert_allclose(
+        np.diff(T) * abs(arc.opening), 2 * np.arcsin(np.hypot(*np.diff(points, axis=0).T) / 1.4), atol=1e-14
+    )
 
 
 @pytest.mark.parametrize(

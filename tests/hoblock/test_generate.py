@@ -226,8 +226,11 @@ def test_restricted_structure_has_the_same_elements(layouts):
 
 def test_invalid_meshes_name_block_element_and_place(layouts):
     structure = layouts.square(counts=2, curves={("a", "b"): layouts.bump((0, 0), (1, 0), 1.4)})
-    with pytest.raises(InvalidMeshError, match=r"4 of 4 elements have det J <= 0 somewhere\. Worst: element \d in "
-                       r"blocks\.body\[0\] \(a, b, c, d\), det J = -.* at \(xi, eta\) = .*, \(x, y\) = .*\. The angle"):
+    with pytest.raises(
+        InvalidMeshError,
+        match=r"4 of 4 elements have det J <= 0 somewhere\. Worst: element \d in "
+        r"blocks\.body\[0\] \(a, b, c, d\), det J = -.* at \(xi, eta\) = .*, \(x, y\) = .*\. The angle",
+    ):
         generate(structure, 4)
     mesh = generate(structure, 4, check=False)
     with pytest.raises(InvalidMeshError, match="Worst: element"):

@@ -5,8 +5,18 @@ from hoblock.errors import GradingError
 from hoblock.grading import Cubic, Exponential, Quadratic, Reversed, Uniform, element_corners
 
 S = np.linspace(0.0, 1.0, 101)
-ALL = [Uniform(), Quadratic(0.7), Quadratic(-0.95), Cubic(0.0), Cubic(0.9), Exponential(3.0), Exponential(-3.0),
-       Exponential(0.0), Exponential(50.0), Reversed(Exponential(2.0))]
+ALL = [
+    Uniform(),
+    Quadratic(0.7),
+    Quadratic(-0.95),
+    Cubic(0.0),
+    Cubic(0.9),
+    Exponential(3.0),
+    Exponential(-3.0),
+    Exponential(0.0),
+    Exponential(50.0),
+    Reversed(Exponential(2.0)),
+]
 
 
 @pytest.mark.parametrize("grading", ALL, ids=str)

@@ -116,9 +116,11 @@ def test_formats(suffix, layouts, tmp_path, matplotlib):
 
 
 def test_the_state_of_pyplot_is_left_alone(layouts, tmp_path, matplotlib):
-    code = ("import sys, numpy as np; from hoblock.mesh import QuadMesh; from hoblock.plot import plot_mesh;"
-            "mesh = QuadMesh(np.array([(0, 0), (1, 0), (0, 1), (1, 1)], float), np.arange(4)[None], 1, {}, {});"
-            "plot_mesh(mesh, sys.argv[1], width=2, dpi=40); raise SystemExit('matplotlib.pyplot' in sys.modules)")
+    code = (
+        "import sys, numpy as np; from hoblock.mesh import QuadMesh; from hoblock.plot import plot_mesh;"
+        "mesh = QuadMesh(np.array([(0, 0), (1, 0), (0, 1), (1, 1)], float), np.arange(4)[None], 1, {}, {});"
+        "plot_mesh(mesh, sys.argv[1], width=2, dpi=40); raise SystemExit('matplotlib.pyplot' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code, str(tmp_path / "a.png")], check=False).returncode == 0
 
 

@@ -124,7 +124,8 @@ def test_bernstein_coefficients_bracket_the_polynomial(order, rng):
         values = rng.standard_normal(order + 1)
         coefficients = bernstein_from_lagrange(order) @ values
         sampled = lagrange(gauss_lobatto(order), np.linspace(-1, 1, 200)) @ (
-            lagrange(equispaced(order), gauss_lobatto(order)) @ values)
+            lagrange(equispaced(order), gauss_lobatto(order)) @ values
+        )
         assert coefficients.min() <= sampled.min() + 1e-9
         assert coefficients.max() >= sampled.max() - 1e-9
 

@@ -16,7 +16,9 @@ pytest.importorskip("meshio")
 def channel(layouts, order):
     vertices, quads = layouts.quads("grid")
     structure = BlockStructure.build(
-        vertices, {"fluid": quads[:4], "the solid": quads[4:]}, counts=2,
+        vertices,
+        {"fluid": quads[:4], "the solid": quads[4:]},
+        counts=2,
         edges={"bottom": [(0, 1), (1, 2), (2, 3)], "left": [(0, 4), (4, 8)], "walls": [(0, 1), (8, 9)]},
         curves={(1, 2): layouts.bump((1, 0), (2, 0), 0.15), (5, 6): layouts.bump((1, 1), (2, 1), -0.1)},
     )
@@ -90,7 +92,11 @@ def test_meshio_reads_proper_types(order, quad, line, layouts, tmp_path):
     file = meshio.read(path, file_format="gmsh")
     assert set(file.cells_dict) == {quad, line}
     assert {name: tuple(value) for name, value in file.field_data.items()} == {
-        "bottom": (1, 1), "left": (2, 1), "walls": (3, 1), "fluid": (4, 2), "the solid": (5, 2)
+        "bottom": (1, 1),
+        "left": (2, 1),
+        "walls": (3, 1),
+        "fluid": (4, 2),
+        "the solid": (5, 2),
     }
     if order <= 2:  # GLL and equispaced nodes are the same, and so is the order that meshio reads
         np.testing.assert_allclose(file.points[:, :2], mesh.points, atol=1e-15)

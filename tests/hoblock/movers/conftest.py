@@ -67,14 +67,20 @@ class Run:
         return last
 
 
-def grid(x: Iterable[float], y: Iterable[float], solid: Callable[[float, float], bool], count: int,
-         warp: Callable[[float, float], tuple[float, float]] = lambda x, y: (x, y)) -> BlockStructure:
+def grid(
+    x: Iterable[float],
+    y: Iterable[float],
+    solid: Callable[[float, float], bool],
+    count: int,
+    warp: Callable[[float, float], tuple[float, float]] = lambda x, y: (x, y),
+) -> BlockStructure:
     """Blocks between grid lines, without those whose centre is solid."""
     x, y = list(x), list(y)
     names = {(i, j): f"{i}_{j}" for i in range(len(x)) for j in range(len(y))}
     blocks = [
         [names[i, j], names[i + 1, j], names[i + 1, j + 1], names[i, j + 1]]
-        for i in range(len(x) - 1) for j in range(len(y) - 1)
+        for i in range(len(x) - 1)
+        for j in range(len(y) - 1)
         if not solid(0.5 * (x[i] + x[i + 1]), 0.5 * (y[j] + y[j + 1]))
     ]
     used = {name for block in blocks for name in block}
@@ -135,11 +141,21 @@ def cantilever(points: np.ndarray, amplitude: float) -> np.ndarray:
     return np.stack([5.5 + x - e * np.sin(theta), 6.0 + y + e * np.cos(theta)], axis=-1)
 
 
-_CYLINDER = {"T0": (5.5, 6.03), "c1": (5.5, 6.5), "c2": (4.5, 6.5), "c3": (4.5, 5.5),
-             "c4": (5.5, 5.5), "B0": (5.5, 5.97)}
-_COLUMNS = dict(zip(
-    ("a", "d", "m0", "m1", "m2", "m3", "m4", "m5", "r0", "r1", "r2", "r3"),
-    (3.5, 5.95, 6.75, 7.05, 7.45, 8.0, 8.75, 9.65, 10.8, 12.5, 15.0, 19.5), strict=True))
+_CYLINDER = {
+    "T0": (5.5, 6.03),
+    "c1": (5.5, 6.5),
+    "c2": (4.5, 6.5),
+    "c3": (4.5, 5.5),
+    "c4": (5.5, 5.5),
+    "B0": (5.5, 5.97),
+}
+_COLUMNS = dict(
+    zip(
+        ("a", "d", "m0", "m1", "m2", "m3", "m4", "m5", "r0", "r1", "r2", "r3"),
+        (3.5, 5.95, 6.75, 7.05, 7.45, 8.0, 8.75, 9.65, 10.8, 12.5, 15.0, 19.5),
+        strict=True,
+    )
+)
 
 
 def wall_ramm() -> Layout:
@@ -163,13 +179,36 @@ def wall_ramm() -> Layout:
     for k in range(5):
         blocks += [[f"T{k}", f"T{k + 1}", f"m{k + 1}t", f"m{k}t"], [f"m{k}b", f"m{k + 1}b", f"B{k + 1}", f"B{k}"]]
     for k in range(3):
-        blocks += [[f"q{k}t", f"q{k + 1}t", f"r{k + 1}t", f"r{k}t"], [f"q{k}b", f"q{k + 1}b", f"q{k + 1}t", f"q{k}t"],
-                   [f"r{k}b", f"r{k + 1}b", f"q{k + 1}b", f"q{k}b"]]
-    half = {("T0", "m0t"): 3, ("at", "aT"): 3, ("c1", "c2"): 2, ("T0", "c1"): 2, ("i1", "ab"): 2, ("c2", "c3"): 2,
-            ("T0", "T1"): 2, ("T1", "T2"): 1, ("T2", "T3"): 1, ("T3", "T4"): 2, ("T4", "T5"): 2, ("B5", "T5"): 1,
-            ("T5", "q0t"): 3, ("q0t", "q1t"): 3, ("q1t", "q2t"): 3, ("q2t", "q3t"): 3}
-    graded = {(f"T{k}", f"m{k}t"): 1.5 for k in range(6)} | {("c1", "dt"): 1.5, ("c2", "at"): 1.5, ("T5", "T4"): 1.6,
-                                                            ("T5", "q0t"): 1.6, ("q0t", "r0t"): 1.2}
+        blocks += [
+            [f"q{k}t", f"q{k + 1}t", f"r{k + 1}t", f"r{k}t"],
+            [f"q{k}b", f"q{k + 1}b", f"q{k + 1}t", f"q{k}t"],
+            [f"r{k}b", f"r{k + 1}b", f"q{k + 1}b", f"q{k}b"],
+        ]
+    half = {
+        ("T0", "m0t"): 3,
+        ("at", "aT"): 3,
+        ("c1", "c2"): 2,
+        ("T0", "c1"): 2,
+        ("i1", "ab"): 2,
+        ("c2", "c3"): 2,
+        ("T0", "T1"): 2,
+        ("T1", "T2"): 1,
+        ("T2", "T3"): 1,
+        ("T3", "T4"): 2,
+        ("T4", "T5"): 2,
+        ("B5", "T5"): 1,
+        ("T5", "q0t"): 3,
+        ("q0t", "q1t"): 3,
+        ("q1t", "q2t"): 3,
+        ("q2t", "q3t"): 3,
+    }
+    graded = {(f"T{k}", f"m{k}t"): 1.5 for k in range(6)} | {
+        ("c1", "dt"): 1.5,
+        ("c2", "at"): 1.5,
+        ("T5", "T4"): 1.6,
+        ("T5", "q0t"): 1.6,
+        ("q0t", "r0t"): 1.2,
+    }
     mirror = str.maketrans("tbTB", "btBT")
 
     def other(name: str) -> str:
@@ -179,8 +218,12 @@ def wall_ramm() -> Layout:
     gradings = {pair: Exponential(a) for pair, a in graded.items()}
     gradings |= {(other(p), other(q)): grading for (p, q), grading in gradings.items()}
     structure = BlockStructure.build(vertices, blocks, counts=counts, gradings=gradings)
-    return Layout(structure, edges_inside(structure, lambda p: (p[:, 0] > 5.5 - 1e-9) & (p[:, 0] < 9.5 + 1e-9)
-                                          & (np.abs(p[:, 1] - 6.0) < 0.03 + 1e-9)))
+    return Layout(
+        structure,
+        edges_inside(
+            structure, lambda p: (p[:, 0] > 5.5 - 1e-9) & (p[:, 0] < 9.5 + 1e-9) & (np.abs(p[:, 1] - 6.0) < 0.03 + 1e-9)
+        ),
+    )
 
 
 @pytest.fixture(scope="session", name="plate_in_box")

@@ -33,8 +33,16 @@ NONE = np.array([], dtype=np.int64)
 NOWHERE = np.zeros((0, 2))
 
 
-def residual(structure: BlockStructure, vertex: int, x: np.ndarray, vertices: np.ndarray, power: int, lower: float,
-             upper: float, penalty: float) -> np.ndarray:
+def residual(
+    structure: BlockStructure,
+    vertex: int,
+    x: np.ndarray,
+    vertices: np.ndarray,
+    power: int,
+    lower: float,
+    upper: float,
+    penalty: float,
+) -> np.ndarray:
     """h of the paper at one vertex, written with acos-free scalar formulas and no batches."""
     vertices = vertices.copy()
     vertices[vertex] = x
@@ -64,18 +72,31 @@ def residual(structure: BlockStructure, vertex: int, x: np.ndarray, vertices: np
 def test_a_step_is_gauss_newton_with_derivatives_by_finite_differences(power, damping):
     structure = square_grid(2)
     options = {"power": power, "lower": 0.8, "upper": 1.1, "penalty": 3.0}
-    mover = AngleOptimisation(structure, NONE, sweeps=1, iterations=1, damping=damping, predictor=False, radius=100.0,
-                              ideal="right", **options)
+    mover = AngleOptimisation(
+        structure,
+        NONE,
+        sweeps=1,
+        iterations=1,
+        damping=damping,
+        predictor=False,
+        radius=100.0,
+        ideal="right",
+        **options,
+    )
     current = structure.vertices.copy()
     current[4] = x = np.array([1.35, 0.8])  # one edge too short, one too long
     h = residual(structure, 4, x, current, **options)
     assert len(h) == 16
     assert (h[12:] > 0.0).sum() >= 2
     steps = 1e-6 * np.eye(2)
-    J = np.stack([
-        (residual(structure, 4, x + d, current, **options) - residual(structure, 4, x - d, current, **options)) / 2e-6
-        for d in steps
-    ], axis=-1)
+    J = np.stack(
+        [
+            (residual(structure, 4, x + d, current, **options) - residual(structure, 4, x - d, current, **options))
+            / 2e-6
+            for d in steps
+        ],
+        axis=-1,
+    )
     A = J.T @ J
     expected = x - np.linalg.solve(A + damping * np.trace(A) * np.eye(2), J.T @ h)
     np.testing.assert_allclose(mover.move(current, NOWHERE)[4], expected, atol=1e-7)
@@ -189,10 +210,14 @@ def test_the_upper_limit_shortens_edges():
     assert limited + 0.05 < without < 1.6
 
 
-@pytest.mark.parametrize(("motion", "end", "least", "published"), [
-    ("translation", 0.99, 0.92, (0.57, 0.70)), ("rotation", 180.0, 63.0, (45.0, 57.0)),
-    ("bending", 270.0, 180.0, (150.0, 175.0)),
-])
+@pytest.mark.parametrize(
+    ("motion", "end", "least", "published"),
+    [
+        ("translation", 0.99, 0.92, (0.57, 0.70)),
+        ("rotation", 180.0, 63.0, (45.0, 57.0)),
+        ("bending", 270.0, 180.0, (150.0, 175.0)),
+    ],
+)
 def test_reach_of_a_plate_in_a_box(plate_in_box, rig, motion, end, least, published):
     structure, driven = plate_in_box.structure, plate_in_box.driven
     assert rig(plate_in_box, AngleOptimisation(structure, driven), motion).reach(end) >= least
@@ -228,9 +253,11 @@ def test_the_wall_ramm_flap_swings_as_published(wall_ramm, rig):
 
 
 def test_the_flap_reaches_further_than_as_published(wall_ramm, rig):
-    movers = (AngleOptimisation(wall_ramm.structure, wall_ramm.driven),
-              AngleOptimisation.as_published(wall_ramm.structure, wall_ramm.driven),
-              PseudoSolid(wall_ramm.structure, wall_ramm.driven))
+    movers = (
+        AngleOptimisation(wall_ramm.structure, wall_ramm.driven),
+        AngleOptimisation.as_published(wall_ramm.structure, wall_ramm.driven),
+        PseudoSolid(wall_ramm.structure, wall_ramm.driven),
+    )
     ours, published, solid = (rig(wall_ramm, mover, "cantilever").reach(1.2) for mover in movers)
     assert ours > 0.5
     assert ours > 1.5 * max(published, solid)
@@ -295,14 +322,23 @@ def test_irregular_vertices_keep_the_angles_of_the_reference():
     np.testing.assert_allclose(current[0], 0.0, atol=5e-3)
 
 
-@pytest.mark.parametrize(("options", "message"), [
-    ({"power": 3}, "power is 3; expected an even integer"), ({"power": 0}, "power is 0"),
-    ({"sweeps": 0}, "sweeps is 0"), ({"iterations": 0}, "iterations is 0"), ({"lower": 0.0}, "lower is 0.0; expected"),
-    ({"upper": 0.9}, "upper is 0.9"), ({"penalty": -1.0}, "penalty is -1.0"), ({"radius": 0.0}, "radius is 0.0"),
-    ({"damping": -0.1}, "damping is -0.1"), ({"damping": float("nan")}, "damping is nan"),
-    ({"projection": "never"}, "projection is 'never'; expected 'every' or 'end'"),
-    ({"ideal": "best"}, "ideal is 'best'; expected 'reference' or 'right'"),
-])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"power": 3}, "power is 3; expected an even integer"),
+        ({"power": 0}, "power is 0"),
+        ({"sweeps": 0}, "sweeps is 0"),
+        ({"iterations": 0}, "iterations is 0"),
+        ({"lower": 0.0}, "lower is 0.0; expected"),
+        ({"upper": 0.9}, "upper is 0.9"),
+        ({"penalty": -1.0}, "penalty is -1.0"),
+        ({"radius": 0.0}, "radius is 0.0"),
+        ({"damping": -0.1}, "damping is -0.1"),
+        ({"damping": float("nan")}, "damping is nan"),
+        ({"projection": "never"}, "projection is 'never'; expected 'every' or 'end'"),
+        ({"ideal": "best"}, "ideal is 'best'; expected 'reference' or 'right'"),
+    ],
+)
 def test_options_out_of_range_are_named(options, message):
     with pytest.raises(MoverError, match=message):
         AngleOptimisation(square_grid(2), NONE, **options)

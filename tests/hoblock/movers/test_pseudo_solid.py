@@ -97,8 +97,11 @@ def test_moves_are_linear_and_do_not_depend_on_the_path(plate_in_box, rig):
     np.testing.assert_allclose(run.to(0.0), plate_in_box.structure.vertices, rtol=0.0, atol=1e-13)
     start = plate_in_box.structure.vertices
     first, second = (run.mover.move(start, run.driven_at(s)) - start for s in (8.0, -30.0))
-    both = start[run.mover.driven] + 2.0 * (run.driven_at(8.0) - start[run.mover.driven]) + (
-        run.driven_at(-30.0) - start[run.mover.driven])
+    both = (
+        start[run.mover.driven]
+        + 2.0 * (run.driven_at(8.0) - start[run.mover.driven])
+        + (run.driven_at(-30.0) - start[run.mover.driven])
+    )
     np.testing.assert_allclose(run.mover.move(start, both) - start, 2.0 * first + second, atol=1e-13)
 
 
@@ -118,9 +121,14 @@ def test_a_negative_exponent_keeps_small_blocks_stiffer(plate_in_box):
     assert turn[0] > turn[1] > turn[2]
 
 
-@pytest.mark.parametrize(("motion", "end", "least", "most"), [
-    ("translation", 0.99, 0.80, 0.88), ("rotation", 180.0, 45.0, 57.0), ("bending", 270.0, 126.0, 144.0),
-])
+@pytest.mark.parametrize(
+    ("motion", "end", "least", "most"),
+    [
+        ("translation", 0.99, 0.80, 0.88),
+        ("rotation", 180.0, 45.0, 57.0),
+        ("bending", 270.0, 126.0, 144.0),
+    ],
+)
 def test_reach_of_a_plate_in_a_box(plate_in_box, rig, motion, end, least, most):
     run = rig(plate_in_box, PseudoSolid(plate_in_box.structure, plate_in_box.driven), motion)
     assert least <= run.reach(end) <= most

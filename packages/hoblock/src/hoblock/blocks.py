@@ -105,6 +105,7 @@ class BlockStructure:
 
         grouped = blocks if isinstance(blocks, Mapping) else {"blocks": blocks}
         quads, groups = checks.quad_table(grouped, vertex)
+        checks.check_counter_clockwise(quads, groups, names, positions)
         topology_edges, block_edges, chains, rotation = orient(quads, names)
         quads = np.take_along_axis(quads, (np.arange(4) + rotation[:, None]) % 4, axis=1)
         topology = BlockTopology(
@@ -114,9 +115,11 @@ class BlockStructure:
         graded = _directed(topology, gradings or {}, vertex, "gradings", ReversedGrading)
         checks.check_geometry(topology, positions, frozenset(curved))
         named = {name: _named(topology, pairs, vertex, f"edges.{name}") for name, pairs in (edges or {}).items()}
-        asked = {} if isinstance(counts, int) else {
-            (vertex(a, "counts"), vertex(b, "counts")): n for (a, b), n in counts.items()
-        }
+        asked = (
+            {}
+            if isinstance(counts, int)
+            else {(vertex(a, "counts"), vertex(b, "counts")): n for (a, b), n in counts.items()}
+        )
         per_edge = checks.chain_counts(topology, asked, counts if isinstance(counts, int) else default_count)
         topology = replace(topology, counts=per_edge, edge_groups=named)
         _check_ends(topology, positions, curved)
@@ -250,5 +253,9 @@ def _check_ends(topology: BlockTopology, vertices: Array, curves: Mapping[int, C
     for edge, curve in curves.items():
         first, second = topology.edges[edge]
         ends = curve.points[[0, -1]] if isinstance(curve, NodalCurve) else curve(np.array([0.0, 1.0]))
-        checks.check_ends(ends, vertices, {names[first]: int(first), names[second]: int(second)},
-                          f"curve on edge {topology.edge_name(edge)}")
+        checks.check_ends(
+            ends,
+            vertices,
+            {names[first]: int(first), names[second]: int(second)},
+            f"curve on edge {topology.edge_name(edge)}",
+        )

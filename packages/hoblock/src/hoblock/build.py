@@ -87,8 +87,10 @@ def _edge_pairs(paths: tuple[Path, ...], sides: set[frozenset[str]], place: str)
     pairs = [pair for path in paths for pair in _pairs(path)]
     for first, second in pairs:
         if frozenset((first, second)) not in sides:
-            raise TopologyError(f"{place}: no block has a side from '{first}' to '{second}'; a path walks along block "
-                                "edges, naming every vertex on its way.")
+            raise TopologyError(
+                f"{place}: no block has a side from '{first}' to '{second}'; a path walks along block "
+                "edges, naming every vertex on its way."
+            )
     return pairs
 
 

@@ -56,16 +56,26 @@ def _parser() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("scene", metavar="SCENE", help="scene file (.toml); its [mesh] part is used")
     common.add_argument("--order", type=int, metavar="P", help="order of the elements, instead of the scene's")
-    common.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="overrides",
-                        help="change a value of the scene, for example --set mesh.elements=2; may be repeated")
+    common.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        dest="overrides",
+        help="change a value of the scene, for example --set mesh.elements=2; may be repeated",
+    )
 
     commands.add_parser("check", parents=[common], help="make the mesh and report its size and quality")
     mesh = commands.add_parser("mesh", parents=[common], help="make the mesh and write it to a file")
     mesh.add_argument("-o", "--output", required=True, metavar="FILE", help=".msh (Gmsh 2.2), .vtu or .npz")
     plot = commands.add_parser("plot", parents=[common], help="draw the mesh; an invalid one too, bad elements red")
     plot.add_argument("-o", "--output", required=True, metavar="FILE", help=".png, .svg or .pdf")
-    plot.add_argument("--color", choices=["scaled_jacobian", "jacobian_ratio", "skewness", "groups"],
-                      default="scaled_jacobian", help="what the colours show (default: %(default)s)")
+    plot.add_argument(
+        "--color",
+        choices=["scaled_jacobian", "jacobian_ratio", "skewness", "groups"],
+        default="scaled_jacobian",
+        help="what the colours show (default: %(default)s)",
+    )
     plot.add_argument("--names", action="store_true", help="write the names of the block vertices")
     return parser
 
@@ -77,8 +87,9 @@ def _run(arguments: argparse.Namespace) -> None:
     if arguments.command == "plot":
         mesh = generate(structure, scene.order, check=False)
         color = None if arguments.color == "groups" else arguments.color
-        plot_mesh(mesh, arguments.output, structure=structure, color=color, vertex_names=arguments.names,
-                  title=scene.title)
+        plot_mesh(
+            mesh, arguments.output, structure=structure, color=color, vertex_names=arguments.names, title=scene.title
+        )
         print(f"wrote {arguments.output}")
         raise_if_invalid(mesh, structure)
         return

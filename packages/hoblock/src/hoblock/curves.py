@@ -100,8 +100,10 @@ class Parametric:
         t = np.asarray(t, dtype=float)
         points = np.asarray(self.function(t), dtype=float)
         if points.shape != (*t.shape, 2):
-            raise CurveError(f"parametric curve: returned shape {points.shape} for {t.shape[0]} parameters; "
-                             f"expected {(*t.shape, 2)}.")
+            raise CurveError(
+                f"parametric curve: returned shape {points.shape} for {t.shape[0]} parameters; "
+                f"expected {(*t.shape, 2)}."
+            )
         if not np.all(np.isfinite(points)):
             bad = t[~np.isfinite(points).all(axis=-1)][0]
             raise CurveError(f"parametric curve: not finite at t = {bad:g}.")

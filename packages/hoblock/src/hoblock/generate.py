@@ -119,8 +119,10 @@ def _layout(topology: BlockTopology, gradings: tuple[Grading, ...], order: int) 
         np.concatenate(parameters),
         np.repeat(np.arange(len(edges)), lengths),
         _batches(topology, block_nodes, parameters),
-        {name: np.concatenate([np.arange(cell_starts[b], cell_starts[b + 1]) for b in blocks])
-         for name, blocks in topology.block_groups.items()},
+        {
+            name: np.concatenate([np.arange(cell_starts[b], cell_starts[b + 1]) for b in blocks])
+            for name, blocks in topology.block_groups.items()
+        },
         _edge_groups(topology, columns, rows, cell_starts),
     )
 
@@ -249,8 +251,9 @@ def regenerate(
         raise ValueError("regenerate: the mesh was made from another block structure; use generate.")
     points = np.empty((plan.node_count, 2)) if out is None else out
     if points.shape != (plan.node_count, 2) or points.dtype != np.float64:
-        raise ValueError(f"regenerate: out has shape {points.shape}, type {points.dtype}; expected "
-                         f"{(plan.node_count, 2)}, float64.")
+        raise ValueError(
+            f"regenerate: out has shape {points.shape}, type {points.dtype}; expected {(plan.node_count, 2)}, float64."
+        )
     changed = None
     if previous is not None:
         if np.may_share_memory(points, mesh.points):
@@ -269,7 +272,8 @@ def changed_blocks(previous: BlockStructure, structure: BlockStructure) -> NDArr
     moved = (previous.vertices != structure.vertices).any(axis=1)
     changed = np.asarray(moved[topology.quads].any(axis=1))
     edges = [
-        edge for edge in previous.curves.keys() | structure.curves.keys()
+        edge
+        for edge in previous.curves.keys() | structure.curves.keys()
         if previous.curves.get(edge) is not structure.curves.get(edge)
     ]
     if edges:
@@ -307,8 +311,9 @@ def _nodal_points(curve: NodalCurve, plan: Layout, topology: BlockTopology, edge
     """Nodes of an interface edge: taken as they are for the same order, evaluated element by element for another."""
     count = int(topology.counts[edge])
     if curve.count != count:
-        raise CurveError(f"edge {topology.edge_name(edge)}: the nodal curve has {curve.count} elements; the edge has "
-                         f"{count}.")
+        raise CurveError(
+            f"edge {topology.edge_name(edge)}: the nodal curve has {curve.count} elements; the edge has {count}."
+        )
     if curve.order == plan.order:
         return curve.points
     inner = (gauss_lobatto(plan.order)[:-1] + 1.0) / 2.0

@@ -85,8 +85,9 @@ def orient(quads: Index, names: Sequence[str]) -> tuple[Index, Index, Index, Ind
     return edges, block_edges, chains, rotation
 
 
-def _check_neighbours(quads: Index, pairs: Index, edge_of_side: Index, forward: NDArray[np.bool_],
-                      names: Sequence[str]) -> None:
+def _check_neighbours(
+    quads: Index, pairs: Index, edge_of_side: Index, forward: NDArray[np.bool_], names: Sequence[str]
+) -> None:
     uses = np.bincount(edge_of_side.ravel(), minlength=len(pairs))
     both = np.bincount(edge_of_side.ravel(), weights=forward.ravel(), minlength=len(pairs))
     bad = np.flatnonzero((uses > 2) | ((uses == 2) & (both != 1)))
@@ -94,7 +95,7 @@ def _check_neighbours(quads: Index, pairs: Index, edge_of_side: Index, forward: 
         return
     edge = int(bad[0])
     blocks = [int(b) for b in np.flatnonzero((edge_of_side == edge).any(axis=1))]
-    what = ("belongs to more than two blocks" if uses[edge] > 2 else "has two blocks on the same side")
+    what = "belongs to more than two blocks" if uses[edge] > 2 else "has two blocks on the same side"
     raise TopologyError(
         f"edge {names[pairs[edge][0]]}–{names[pairs[edge][1]]} {what}: blocks {', '.join(map(str, blocks))} "
         f"({'; '.join(','.join(names[v] for v in quads[b]) for b in blocks)}). Blocks must not overlap."

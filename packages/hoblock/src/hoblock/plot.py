@@ -160,8 +160,15 @@ def _draw_elements(figure: Any, axes: Any, mesh: QuadMesh, color: str | None) ->
     axes.add_collection(collections.PolyCollection(outlines[invalid], facecolors=_INVALID, zorder=3, **style))
     what = f"{label}, {int(invalid.sum())} invalid (red)" if invalid.any() else label
     lowest, highest = float(values.min()), float(values.max())
-    figure.colorbar(patches, ax=axes, orientation="horizontal", shrink=0.5, aspect=40, pad=0.02,
-                    label=f"{what}: {lowest:.3g} to {highest:.3g}")
+    figure.colorbar(
+        patches,
+        ax=axes,
+        orientation="horizontal",
+        shrink=0.5,
+        aspect=40,
+        pad=0.02,
+        label=f"{what}: {lowest:.3g} to {highest:.3g}",
+    )
 
 
 def _group_colours(mesh: QuadMesh) -> list[str]:

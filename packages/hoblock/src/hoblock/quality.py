@@ -148,6 +148,7 @@ def det_jacobian_bounds(mesh: QuadMesh, subdivisions: int = 0) -> tuple[Array, A
 
 def _subdivide(coefficients: Array) -> Array:
     """Cut polynomials in four by de Casteljau's algorithm; children of one parent are adjacent."""
+
     def halves(c: Array) -> tuple[Array, Array]:
         left, right = [c[:, 0]], [c[:, -1]]
         while c.shape[1] > 1:
@@ -195,8 +196,15 @@ def invalid_elements(mesh: QuadMesh, subdivisions: int = 6) -> list[BadElement]:
     at = det_J.argmin(axis=1)
     places = (tensor_basis(gauss_lobatto(mesh.order), grid[at])[:, None, :] @ part.coordinates)[:, 0]
     found = [
-        BadElement(int(element), float(det_J[k, at[k]]), float(grid[at[k], 0]), float(grid[at[k], 1]),
-                   float(places[k, 0]), float(places[k, 1]), _reason(det_J[k], grid[at[k]]))
+        BadElement(
+            int(element),
+            float(det_J[k, at[k]]),
+            float(grid[at[k], 0]),
+            float(grid[at[k], 1]),
+            float(places[k, 0]),
+            float(places[k, 1]),
+            _reason(det_J[k], grid[at[k]]),
+        )
         for k, element in enumerate(elements)
     ]
     return sorted(found, key=lambda bad: bad.det_J)
@@ -211,5 +219,6 @@ def _reason(det_J: Array, xi: Array) -> str:
         return "det J is positive where sampled but too close to zero to be certain: move a vertex or soften the curve."
     if np.abs(xi).max() == 1.0 and np.abs(xi).min() == 1.0:
         return "The angle at that corner is 180° or more: move a vertex of its block or soften its curves."
-    return ("Edges of its block cross or bend too far: move a vertex, split the block or soften the curve or the "
-            "grading.")
+    return (
+        "Edges of its block cross or bend too far: move a vertex, split the block or soften the curve or the grading."
+    )

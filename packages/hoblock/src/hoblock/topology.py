@@ -99,8 +99,9 @@ class BlockTopology:
         if (second, first) in self._edge_of:
             return self._edge_of[second, first], False
         names = self.vertex_names
-        raise TopologyError(f"no block edge joins '{names[first]}' and '{names[second]}'. Name two corners of one side "
-                            "of a block.")
+        raise TopologyError(
+            f"no block edge joins '{names[first]}' and '{names[second]}'. Name two corners of one side of a block."
+        )
 
     def edge_name(self, edge: int) -> str:
         """Return 'first–second' with the names of the edge's vertices."""

@@ -13,7 +13,7 @@ from hoblock.topology import BlockTopology
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["chain_counts", "check_ends", "check_geometry", "quad_table", "vertex_table"]
+__all__ = ["chain_counts", "check_counter_clockwise", "check_ends", "check_geometry", "quad_table", "vertex_table"]
 
 
 def vertex_table(vertices: Mapping[str, Sequence[float]] | Array) -> tuple[tuple[str, ...], Array]:
@@ -74,8 +74,23 @@ def quad_table(
     return np.array(quads, dtype=np.int64), members
 
 
+def check_counter_clockwise(quads: Index, groups: Mapping[str, Index], names: Sequence[str], vertices: Array) -> None:
+    """Blocks must have positive area; the first thing to ask, since orientation relies on it."""
+    corners = vertices[quads]
+    ahead = np.roll(corners, -1, axis=1)
+    area = 0.5 * np.sum(corners[..., 0] * ahead[..., 1] - corners[..., 1] * ahead[..., 0], axis=1)
+    for name, members in groups.items():
+        for k in np.flatnonzero(area[members] <= 0.0):
+            block = members[k]
+            listed = ", ".join(names[v] for v in quads[block])
+            raise TopologyError(
+                f"blocks.{name}[{k}] ({listed}) is clockwise or inverted (signed area {area[block]:.3g}). "
+                "List its vertices counter-clockwise."
+            )
+
+
 def check_geometry(topology: BlockTopology, vertices: Array, curved: frozenset[int]) -> None:
-    """Blocks must be counter-clockwise and convex, conforming, and use every vertex.
+    """Blocks must be convex, conforming, and use every vertex.
 
     Corners between two straight edges must be below 180°; a corner at a curved edge is left to the mesh's own check.
     """
@@ -84,19 +99,16 @@ def check_geometry(topology: BlockTopology, vertices: Array, curved: frozenset[i
     after, before = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     cross = after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0]
     scale = np.hypot(*np.moveaxis(after, -1, 0)) * np.hypot(*np.moveaxis(before, -1, 0))
-    area = 0.5 * np.sum(corners[..., 0] * np.roll(corners[..., 1], -1, axis=1)
-                        - corners[..., 1] * np.roll(corners[..., 0], -1, axis=1), axis=1)
     bent = np.isin(topology.block_edges, list(curved))
     straight = ~(bent | np.roll(bent, 1, axis=1))  # corner k lies between sides k - 1 and k
-    for block in np.flatnonzero((area <= 0.0) | ((cross <= 1e-12 * scale) & straight).any(axis=1)):
+    for block in np.flatnonzero(((cross <= 1e-12 * scale) & straight).any(axis=1)):
         where = topology.block_name(int(block))
-        if area[block] <= 0.0:
-            raise TopologyError(f"{where} is clockwise or inverted (signed area {area[block]:.3g}). "
-                                "List its vertices counter-clockwise.")
         k = int(np.argmin(np.where(straight[block], cross[block] / scale[block], np.inf)))
         x, y = corners[block, k]
-        raise TopologyError(f"{where}: the angle at vertex '{names[quads[block, k]]}' ({x:g}, {y:g}) is 180° or more. "
-                            "Move a vertex or split the block.")
+        raise TopologyError(
+            f"{where}: the angle at vertex '{names[quads[block, k]]}' ({x:g}, {y:g}) is 180° or more. "
+            "Move a vertex or split the block."
+        )
     unused = np.setdiff1d(np.arange(len(names)), quads)
     if unused.size:
         listed = ", ".join(f"'{names[v]}'" for v in unused[:8])

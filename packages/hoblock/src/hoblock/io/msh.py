@@ -44,8 +44,10 @@ def write_msh(path: str | Path, mesh: QuadMesh) -> None:
     import meshio
 
     if mesh.order > _HIGHEST_ORDER:
-        raise MeshFileError(f"{path}: the mesh has order {mesh.order}; Gmsh's files hold orders 1 to {_HIGHEST_ORDER}. "
-                            "Write .vtu or .npz, or lower the order.")
+        raise MeshFileError(
+            f"{path}: the mesh has order {mesh.order}; Gmsh's files hold orders 1 to {_HIGHEST_ORDER}. "
+            "Write .vtu or .npz, or lower the order."
+        )
     _check_groups(path, mesh)
     blocks: list[tuple[str, Index]] = []
     tags: list[Index] = []
@@ -79,15 +81,19 @@ def _tagged_quads(mesh: QuadMesh, names: dict[str, Index]) -> tuple[Index, Index
 def _check_groups(path: str | Path, mesh: QuadMesh) -> None:
     both = sorted(mesh.cell_groups.keys() & mesh.edge_groups.keys())
     if both:
-        raise MeshFileError(f"{path}: {', '.join(map(repr, both))} names elements and edges; a .msh file needs "
-                            "different names for them. Rename one.")
+        raise MeshFileError(
+            f"{path}: {', '.join(map(repr, both))} names elements and edges; a .msh file needs "
+            "different names for them. Rename one."
+        )
     uses = np.zeros(len(mesh.cells), dtype=np.int64)
     for name, members in mesh.cell_groups.items():
         uses[members] += 1
         if (uses[members] > 1).any():
             element = int(members[np.argmax(uses[members])])
-            raise MeshFileError(f"{path}: element {element} is in group {name!r} and in another one; a .msh file holds "
-                                "one group an element. Write .npz or .vtu, or remove a group.")
+            raise MeshFileError(
+                f"{path}: element {element} is in group {name!r} and in another one; a .msh file holds "
+                "one group an element. Write .npz or .vtu, or remove a group."
+            )
 
 
 def _cell_type(shape: str, order: int) -> str:

@@ -95,8 +95,12 @@ def _check(
     def expect_below(array: NDArray[np.generic], count: int, what: str) -> None:
         expect(np.issubdtype(array.dtype, np.integer), f"{what} have type", array.dtype, "integers")
         if array.size:
-            expect(int(array.min()) >= 0 and int(array.max()) < count, f"{what} run from {array.min()} to", array.max(),
-                   f"0 to {count - 1}")
+            expect(
+                int(array.min()) >= 0 and int(array.max()) < count,
+                f"{what} run from {array.min()} to",
+                array.max(),
+                f"0 to {count - 1}",
+            )
 
     expect(order >= 1, "order is", order, "at least 1")
     expect(points.ndim == 2 and points.shape[1] == 2, "points have shape", points.shape, "(n, 2)")

@@ -45,12 +45,16 @@ class VertexRoles:
         count = len(structure.vertices)
         driven = np.array(driven)
         if driven.ndim != 1 or (driven.size and not np.issubdtype(driven.dtype, np.integer)):
-            raise MoverError(f"driven: array of shape {driven.shape} and type {driven.dtype}; expected the numbers of "
-                             "vertices, shape (k,), integers.")
+            raise MoverError(
+                f"driven: array of shape {driven.shape} and type {driven.dtype}; expected the numbers of "
+                "vertices, shape (k,), integers."
+            )
         driven = driven.astype(np.int64)
         if driven.size and (driven[0] < 0 or driven[-1] >= count or (np.diff(driven) <= 0).any()):
-            raise MoverError(f"driven: {driven.tolist()}; expected ascending vertex numbers from 0 to {count - 1}, "
-                             "each once. Use np.unique.")
+            raise MoverError(
+                f"driven: {driven.tolist()}; expected ascending vertex numbers from 0 to {count - 1}, "
+                "each once. Use np.unique."
+            )
         topology = structure.topology
         free = np.setdiff1d(np.arange(count), np.union1d(topology.boundary_vertices, driven))
         for array in (driven, free):
@@ -65,8 +69,10 @@ class VertexRoles:
         finite = np.isfinite(array).all(axis=1)
         if not finite.all():
             k = int(np.argmin(finite))
-            raise MoverError(f"move: {name}[{k}], vertex '{self.names[vertices[k]]}', is {array[k].tolist()}; expected "
-                             "finite coordinates. Check what drives it.")
+            raise MoverError(
+                f"move: {name}[{k}], vertex '{self.names[vertices[k]]}', is {array[k].tolist()}; expected "
+                "finite coordinates. Check what drives it."
+            )
         return array
 
     def assembled(self, driven: Array, free: Array) -> Array:

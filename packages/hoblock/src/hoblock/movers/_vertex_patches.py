@@ -100,8 +100,9 @@ class VertexPatches:
         slope = power * error ** (power - 1)
         return slope * error / power, slope * gradient
 
-    def length_penalties(self, points: Complex, lower: float, upper: float | None, penalty: float
-                         ) -> tuple[Array, Complex]:
+    def length_penalties(
+        self, points: Complex, lower: float, upper: float | None, penalty: float
+    ) -> tuple[Array, Complex]:
         """g = C (|x - a|² - limit²)² with C = penalty/length⁴ outside the limits, and its gradients.
 
         ``lower`` and ``upper`` are fractions of the reference lengths.
@@ -113,8 +114,9 @@ class VertexPatches:
             excess += np.maximum(relative - upper**2, 0.0)
         return penalty * excess**2, (4.0 * penalty * excess / self.length**2) * edge
 
-    def normal_equations(self, points: Complex, power: int, lower: float, upper: float | None, penalty: float
-                         ) -> NormalEquations:
+    def normal_equations(
+        self, points: Complex, power: int, lower: float, upper: float | None, penalty: float
+    ) -> NormalEquations:
         """Normal equations of h = [f, g] at each vertex."""
         f, df = self.angle_errors(points, power)
         g, dg = self.length_penalties(points, lower, upper, penalty)
@@ -170,6 +172,16 @@ def _patches(structure: BlockStructure, vertices: Index, blocks_of: list[Index],
     own, other = np.array(pairs, dtype=np.int64).T
     length = np.hypot(*(structure.vertices[own] - structure.vertices[other]).T)
     return VertexPatches(
-        vertices, corner, after, before, by_after.astype(float), by_before.astype(float), np.array(wanted),
-        np.array(first_angle), own, other, length, np.array(first_edge),
+        vertices,
+        corner,
+        after,
+        before,
+        by_after.astype(float),
+        by_before.astype(float),
+        np.array(wanted),
+        np.array(first_angle),
+        own,
+        other,
+        length,
+        np.array(first_edge),
     )

@@ -119,8 +119,14 @@ class AngleOptimisation:
         solid = PseudoSolid(self.reference, roles.driven) if self.predictor else None
         limits = self.radius * _shortest_edges(self.reference)
         patches = vertex_patches(self.reference, roles.free, _ideal_angles(self.reference, self.ideal))
-        for name, value in (("driven", roles.driven), ("free", roles.free), ("_roles", roles), ("_patches", patches),
-                            ("_limits", limits), ("_solid", solid)):
+        for name, value in (
+            ("driven", roles.driven),
+            ("free", roles.free),
+            ("_roles", roles),
+            ("_patches", patches),
+            ("_limits", limits),
+            ("_solid", solid),
+        ):
             object.__setattr__(self, name, value)
 
     @staticmethod
@@ -142,8 +148,19 @@ class AngleOptimisation:
         The paper gives no numbers for the parameters listed here; see the class for their meaning.
         """
         return AngleOptimisation(
-            reference, driven, power=power, sweeps=sweeps, iterations=iterations, lower=lower, upper=upper,
-            penalty=penalty, radius=radius, projection=projection, damping=0.0, predictor=False, ideal="right",
+            reference,
+            driven,
+            power=power,
+            sweeps=sweeps,
+            iterations=iterations,
+            lower=lower,
+            upper=upper,
+            penalty=penalty,
+            radius=radius,
+            projection=projection,
+            damping=0.0,
+            predictor=False,
+            ideal="right",
         )
 
     @property
@@ -247,4 +264,3 @@ def _ideal_angles(structure: BlockStructure, ideal: str) -> Array:
     mean = np.bincount(topology.quads.ravel(), weights=angles.ravel()) / blocks
     regular = np.abs(mean - 0.5 * np.pi) < np.radians(15.0)
     return np.where(regular[topology.quads], 0.5 * np.pi, angles)
-

@@ -61,8 +61,10 @@ class PseudoSolid:
 
     def __post_init__(self) -> None:
         if not -1.0 < self.poissons_ratio < 0.5:
-            raise MoverError(f"pseudo-solid: poissons_ratio is {self.poissons_ratio:g}; expected one in (-1, 0.5). "
-                             "Plane strain is singular at 0.5; try 0.3.")
+            raise MoverError(
+                f"pseudo-solid: poissons_ratio is {self.poissons_ratio:g}; expected one in (-1, 0.5). "
+                "Plane strain is singular at 0.5; try 0.3."
+            )
         if not np.isfinite(self.exponent):
             raise MoverError(f"pseudo-solid: exponent is {self.exponent:g}; expected a finite number, for example -1.")
         roles = VertexRoles.of(self.reference, self.driven)
@@ -100,8 +102,10 @@ def _youngs_modulus(structure: BlockStructure, exponent: float) -> Array:
     area = 0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
     worst = int(np.argmin(area))
     if not area[worst] > 0.0:
-        raise MoverError(f"pseudo-solid: {structure.topology.block_name(worst)} has area {area[worst]:.3g} between the "
-                         "chords of its edges; expected a positive area. Split its curved edges.")
+        raise MoverError(
+            f"pseudo-solid: {structure.topology.block_name(worst)} has area {area[worst]:.3g} between the "
+            "chords of its edges; expected a positive area. Split its curved edges."
+        )
     return np.asarray((area / area[worst]) ** exponent)
 
 
