@@ -21,7 +21,7 @@ def assemble_vector(dofs: Index, values: Array, size: int) -> Array:
     values : ndarray, shape (e, k)
     size : int
     """
-    return np.bincount(dofs.ravel() + 1, weights=values.ravel(), minlength=size + 1)[1:]
+    return np.asarray(np.bincount(dofs.ravel() + 1, weights=values.ravel(), minlength=size + 1)[1:], dtype=float)
 
 
 class MatrixPattern:

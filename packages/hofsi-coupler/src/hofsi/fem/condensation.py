@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from copy import copy
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -10,6 +13,7 @@ from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import MatrixPattern, assemble_vector
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.linear.direct import DirectFactor
+from hofsi.linear.solver import Solver
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -35,9 +39,11 @@ class CondensedSystem:
         Further unknowns that are held fixed, for example one pressure of an enclosed flow.
     """
 
-    def __init__(self, dofs: Index, boundary: int, size: int, constraints: NodeConstraints,
-                 pinned: tuple[int, ...] = ()) -> None:
+    def __init__(
+        self, dofs: Index, boundary: int, size: int, constraints: NodeConstraints, pinned: tuple[int, ...] = ()
+    ) -> None:
         self.dofs, self.boundary, self.size = dofs, boundary, size
+        self._solver: Callable[[sp.csc_matrix], Solver] = DirectFactor
         self.inner = dofs.shape[1] - boundary
         free = np.zeros(size, dtype=bool)
         free[dofs[:, :boundary]] = True
@@ -69,14 +75,32 @@ class CondensedSystem:
                 R[k][np.ix_(pair, pair)] = constraints.frames[node]
         return elements, R
 
+    def solved_by(self, solver: Callable[[sp.csc_matrix], Solver]) -> CondensedSystem:
+        """Return the same pattern with another solver of condensed matrices; at first that is `DirectFactor`."""
+        other = copy(self)
+        other._solver = solver
+        return other
+
     def factorise(self, A: Array) -> CondensedFactor:
         """Condense and factorise element matrices A of shape (e, k, k)."""
+        S, inverse, X = self._condensed(A)
+        return CondensedFactor(
+            self, A[:, : self.boundary, self.boundary :], inverse, X, self._solver(self._pattern.matrix(S))
+        )
+
+    def matrix(self, A: Array) -> sp.csc_matrix:
+        """Return the condensed matrix of element matrices (e, k, k), in the nodes' own frames."""
+        return self._pattern.matrix(self._condensed(A)[0])
+
+    def _condensed(self, A: Array) -> tuple[Array, Array | None, Array | None]:
+        """Condensed element matrices, inverses of the inner blocks, and those times the blocks beside them."""
         b = self.boundary
         S = A[:, :b, :b]
-        inverse = X = None
+        inverse: Array | None = None
+        X: Array | None = None
         if self.inner:
             try:
-                inverse = np.linalg.inv(A[:, b:, b:])
+                inverse = np.asarray(np.linalg.inv(A[:, b:, b:]), dtype=float)
             except np.linalg.LinAlgError as error:
                 raise LinearSolverError("the matrix of an element's inner unknowns is singular.") from error
             X = inverse @ A[:, b:, :b]
@@ -84,11 +108,7 @@ class CondensedSystem:
         if self._rotated.size:
             S = S.copy()
             S[self._rotated] = self._rotation.transpose(0, 2, 1) @ S[self._rotated] @ self._rotation
-        return CondensedFactor(self, A[:, :b, b:], inverse, X, DirectFactor(self._pattern.matrix(S)))
-
-    def matrix(self, A: Array) -> sp.csc_matrix:
-        """Return the condensed matrix of element matrices, for inspection."""
-        return self.factorise(A).factor._matrix
+        return S, inverse, X
 
     def rotate_back(self, x: Array) -> Array:
         """Element vectors (e, boundary) from the nodes' own frames to x and y."""
@@ -106,8 +126,9 @@ class CondensedSystem:
 class CondensedFactor:
     """A factorised condensed system; made by `CondensedSystem.factorise`."""
 
-    def __init__(self, system: CondensedSystem, coupling: Array, inverse: Array | None, X: Array | None,
-                 factor: DirectFactor) -> None:
+    def __init__(
+        self, system: CondensedSystem, coupling: Array, inverse: Array | None, X: Array | None, factor: Solver
+    ) -> None:
         self.system, self.factor = system, factor
         self._coupling, self._inverse, self._X = coupling, inverse, X
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
+
 from hoblock.numbering import side_nodes
 from hoblock.reference import gauss_legendre, gauss_lobatto, tensor_basis, tensor_gradient, tensor_quadrature
-from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -51,7 +52,12 @@ def side_table(order: int, count: int) -> tuple[ElementTable, ...]:
     ones = np.ones_like(s)
     nodes = gauss_lobatto(order)
     sides = []
-    for points in (np.stack([s, -ones], -1), np.stack([ones, s], -1), np.stack([s, ones], -1), np.stack([-ones, s], -1)):
+    for points in (
+        np.stack([s, -ones], -1),
+        np.stack([ones, s], -1),
+        np.stack([s, ones], -1),
+        np.stack([-ones, s], -1),
+    ):
         sides.append(ElementTable(order, points, weights, tensor_basis(nodes, points), tensor_gradient(nodes, points)))
     return tuple(sides)
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from hoblock.numbering import side_nodes
 from numpy.typing import NDArray
 
+from hoblock.numbering import side_nodes
 from hofsi.fem.constraints import DirectedNodes
 from hofsi.fem.element import ElementTable, boundary_first
 from hofsi.fem.geometry import side_geometry
@@ -15,13 +15,15 @@ Index = NDArray[np.int64]
 
 __all__ = ["consistent_normals"]
 
-_KINK = 0.1  # radians between the normals of two sides from which their common node counts as a corner
+_KINK = 0.1  # radians between the normals of two sides from which their common node counts as a corner, ...
+_CURVED = 0.2  # ... or this part of what one of the sides turns by itself: coarse elements of a smooth curve have kinks
 
 
 def consistent_normals(X: Array, cells: Index, sides: Index, tables: tuple[ElementTable, ...]) -> list[DirectedNodes]:
     """Constraints along the normals n_i ∝ ∫ N_i n ds of the nodes on some sides.
 
-    Nodes where two sides meet at an angle get two constraints, one along each side's normal.
+    Nodes where two sides meet at an angle get two constraints, one along each side's normal. The angle of a corner is
+    more than 0.1, and more than a fifth of the angle by which either side turns.
 
     Parameters
     ----------
@@ -43,20 +45,22 @@ def consistent_normals(X: Array, cells: Index, sides: Index, tables: tuple[Eleme
     """
     order = tables[0].order
     position = np.argsort(boundary_first(order)[0])
-    nodes, normals = [], []
+    nodes, normals, turning = [], [], []
     for side in side_geometry(X, sides, tables):
         local = position[side_nodes(order)[side.number]]
         nodes.append(cells[side.elements][:, local])
-        normals.append((side.table.N[:, local].T @ side.normals))
+        normals.append(side.table.N[:, local].T @ side.normals)
+        turning.append(np.repeat(_angle(normals[-1][:, 0], normals[-1][:, -1]), len(local)))
     flat, vectors = np.concatenate(nodes).ravel(), np.concatenate(normals).reshape(-1, 2)
     units = vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
     found, inverse = np.unique(flat, return_inverse=True)
     total = np.stack([np.bincount(inverse, weights=vectors[:, d]) for d in range(2)], axis=-1)
     mean = total / np.hypot(total[:, 0], total[:, 1])[:, None]
-    deviation = np.abs(mean[inverse, 0] * units[:, 1] - mean[inverse, 1] * units[:, 0])
+    allowed = np.full(len(found), _KINK)
+    np.maximum.at(allowed, inverse, _CURVED * np.concatenate(turning))
     corner = np.zeros(len(found), dtype=bool)
-    # Half the opening between two sides; end values of weighted normals on smooth curves differ far less.
-    corner[inverse[(deviation > np.sin(_KINK / 2.0)) & (np.bincount(inverse)[inverse] > 1)]] = True
+    corner[inverse[2.0 * _angle(mean[inverse], units) > allowed[inverse]]] = True  # half the kink is to either side
+    corner &= np.bincount(inverse) > 1
     entries = [DirectedNodes(found[~corner], mean[~corner])]
     if corner.any():
         first = np.full(len(found), len(flat))
@@ -66,3 +70,8 @@ def consistent_normals(X: Array, cells: Index, sides: Index, tables: tuple[Eleme
         entries += [DirectedNodes(found[corner], units[which[corner]]) for which in (first, last)]
     return entries
 
+
+def _angle(first: Array, second: Array) -> Array:
+    """Angle between vectors (k, 2), in [0, π]."""
+    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return np.asarray(np.abs(np.arctan2(cross, np.sum(first * second, axis=1))))

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
 from hoblock import QuadMesh
 from hoblock.numbering import number_nodes
 from hoblock.reference import gauss_lobatto, tensor_basis, tensor_gradient, tensor_quadrature
-from numpy.typing import NDArray
-
 from hofsi.fem.element import ElementTable, boundary_first, side_table
 
 Array = NDArray[np.float64]
@@ -74,10 +74,24 @@ class TaylorHood:
         tables = []
         for order, permutation in ((p, v_order), (p - 1, p_order)):
             nodes = gauss_lobatto(order)
-            tables.append(ElementTable(order, points, weights, tensor_basis(nodes, points)[:, permutation],
-                                       tensor_gradient(nodes, points)[:, permutation]))
+            tables.append(
+                ElementTable(
+                    order,
+                    points,
+                    weights,
+                    tensor_basis(nodes, points)[:, permutation],
+                    tensor_gradient(nodes, points)[:, permutation],
+                )
+            )
         return TaylorHood(
-            vc, pc, n_count, count, nb, mb, tables[0], tables[1],
+            vc,
+            pc,
+            n_count,
+            count,
+            nb,
+            mb,
+            tables[0],
+            tables[1],
             tuple(permuted(table, v_order) for table in side_table(p, p + 2)),
             tuple(permuted(table, p_order) for table in side_table(p - 1, p + 2)),
             dofs,
@@ -102,10 +116,14 @@ class TaylorHood:
 
     def put(self, A: Array, row: int, column: int, block: Array) -> None:
         """Write the block of a pair of fields into element matrices in local order."""
-        for rows, first in zip(self.rows(row), (slice(None, self._on_boundary(row)), slice(self._on_boundary(row), None)),
-                               strict=True):
-            for columns, second in zip(self.rows(column), (slice(None, self._on_boundary(column)),
-                                                           slice(self._on_boundary(column), None)), strict=True):
+        for rows, first in zip(
+            self.rows(row), (slice(None, self._on_boundary(row)), slice(self._on_boundary(row), None)), strict=True
+        ):
+            for columns, second in zip(
+                self.rows(column),
+                (slice(None, self._on_boundary(column)), slice(self._on_boundary(column), None)),
+                strict=True,
+            ):
                 A[:, rows, columns] = block[:, first, second]
 
     def add(self, A: Array, row: int, column: int, block: Array, elements: Index | slice = slice(None)) -> None:

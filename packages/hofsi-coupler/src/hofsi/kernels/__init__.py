@@ -1,0 +1,1 @@
+"""Element integrals: functions of arrays, without objects and without state."""

@@ -1,7 +1,7 @@
 """Element integrals of the incompressible Navier–Stokes equations on moving elements.
 
-Functions of arrays only. Test functions are indexed by ``i``, trial functions by ``j``; ``N`` is (q, n), derivatives of the
-basis are (e, q, n), integration weights (e, q). Every integral is a batched matrix product.
+Functions of arrays only. Test functions are indexed by ``i``, trial functions by ``j``; ``N`` is (q, n), derivatives of
+the basis are (e, q, n), integration weights (e, q). Every integral is a batched matrix product.
 
 The weak form of the paper's Eqs. (1)–(4) on the current configuration, with the advective velocity a = u - w:
 
@@ -29,8 +29,9 @@ def viscous(dNx: Array, dNy: Array, weights: Array, viscosity: float) -> tuple[A
     return 2.0 * xx + yy, yx, xy, xx + 2.0 * yy
 
 
-def transport(N: Array, dNx: Array, dNy: Array, weights: Array, rate: float, density: float,
-              advective: Array | None) -> Array:
+def transport(
+    N: Array, dNx: Array, dNy: Array, weights: Array, rate: float, density: float, advective: Array | None
+) -> Array:
     """∫ ρ N_i (c N_j + a·∇N_j), shape (e, i, j); the same for both components.
 
     Parameters
@@ -41,10 +42,12 @@ def transport(N: Array, dNx: Array, dNy: Array, weights: Array, rate: float, den
         a; None for none.
     """
     w = density * weights
-    right = (rate * w)[:, :, None] * N
-    if advective is not None:
-        right += (w * advective[..., 0])[:, :, None] * dNx
-        right += (w * advective[..., 1])[:, :, None] * dNy
+    if advective is None:
+        return np.asarray(N.T @ ((rate * w)[:, :, None] * N))
+    right = (w * advective[..., 0])[:, :, None] * dNx
+    right += (w * advective[..., 1])[:, :, None] * dNy
+    if rate:
+        right += (rate * w)[:, :, None] * N
     return np.asarray(N.T @ right)
 
 

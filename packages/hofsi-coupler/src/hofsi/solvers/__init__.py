@@ -1,0 +1,1 @@
+"""Discretised fields: solver → step → state."""

@@ -6,19 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hoblock import QuadMesh
 from numpy.typing import NDArray
 
+from hoblock import QuadMesh
 from hofsi import case
+from hofsi.counts import Counts
 from hofsi.errors import NewtonError
 from hofsi.fem.assembly import assemble_vector
-from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
-from hofsi.records import Counts
+from hofsi.linear.solver import Solver
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
+from hofsi.solvers.fluid_system import FluidSystem, fluid_system
 from hofsi.timestepping.schemes import bdf_weights, extrapolation_weights
 
 Array = NDArray[np.float64]
@@ -69,18 +70,24 @@ class FluidSolver:
         Nodes whose velocity a solid prescribes.
     """
 
-    def __init__(self, mesh: QuadMesh, fluid: case.Fluid, nonlinear: case.NonlinearSettings,
-                 linear: case.LinearSettings, interface: Index) -> None:
+    def __init__(
+        self,
+        mesh: QuadMesh,
+        fluid: case.Fluid,
+        nonlinear: case.NonlinearSettings,
+        linear: case.LinearSettings,
+        interface: Index,
+    ) -> None:
         self.mesh, self.fluid, self.nonlinear, self.linear = mesh, fluid, nonlinear, linear
         self.space = TaylorHood.on(mesh)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity)
         self.counts = Counts()
-        self._system: CondensedSystem | None = None
+        self._system: FluidSystem | None = None
         self._system_for: object = None
         self._geometry: tuple[Array, Geometry, Array, Array] | None = None
         self._constant: tuple[Array, float, Array] | None = None
         self._enclosed: EnclosedRegions | None = None
-        self._stokes: tuple[Array, CondensedSystem, CondensedFactor] | None = None
+        self._stokes: tuple[Array, FluidSystem, Solver] | None = None
 
     @property
     def convecting(self) -> bool:
@@ -96,8 +103,9 @@ class FluidSolver:
                 velocity[:, a] = expression.evaluate(x=points[:, 0], y=points[:, 1])
         return FluidState((velocity,), np.zeros(self.space.pressure_count), (points,), np.zeros(points.shape), time)
 
-    def begin_step(self, state: FluidState, points: Array, steps: Sequence[float], time: float, *,
-                   linear: bool) -> FluidStep:
+    def begin_step(
+        self, state: FluidState, points: Array, steps: Sequence[float], time: float, *, linear: bool
+    ) -> FluidStep:
         """Start a time step that ends at ``time`` on a mesh with node positions ``points``.
 
         Parameters
@@ -160,12 +168,12 @@ class FluidSolver:
             self.counts.constant_assemblies += 1
         return self._constant[2]
 
-    def system(self, points: Array) -> CondensedSystem:
+    def system(self, points: Array) -> FluidSystem:
         """Pattern of the linear systems under the constraints at these node positions."""
         constraints = self.boundary.constraints(points)
         if self._system is None or self._system_for is not constraints:
             pinned = self.enclosed(points).pinned
-            self._system = CondensedSystem(self.space.dofs, self.space.boundary, self.space.size, constraints, pinned)
+            self._system = fluid_system(self.space, constraints, pinned, self.linear, self.geometry(points)[0].weights)
             self._system_for = constraints
         return self._system
 
@@ -179,7 +187,7 @@ class FluidSolver:
         """What a unit pressure does to the velocity, ∫ ∂N/∂x over each element, shape (e, n, 2)."""
         return EnclosedRegions.pressure_work(*self.geometry(points))
 
-    def stokes_factor(self, points: Array, rate: float) -> CondensedFactor:
+    def stokes_factor(self, points: Array, rate: float) -> Solver:
         """Factors of the matrix without convection, kept as long as the matrix."""
         A, system = self.constant_matrices(points, rate), self.system(points)
         if self._stokes is None or self._stokes[0] is not A or self._stokes[1] is not system:
@@ -192,17 +200,34 @@ class FluidStep:
     """One step, or the steady problem, on one mesh; made by `FluidSolver`.
 
     A linear step is assembled and factorised once, however often it is solved.
+
+    Attributes
+    ----------
+    linear : bool
+    converged : bool
+        Whether the last solution satisfies the case's tolerance.
     """
 
-    def __init__(self, solver: FluidSolver, state: FluidState, points: Array, mesh_velocity: Array, rate: float,
-                 history: Array, time: float, advective: Array | None, order: int) -> None:
+    def __init__(
+        self,
+        solver: FluidSolver,
+        state: FluidState,
+        points: Array,
+        mesh_velocity: Array,
+        rate: float,
+        history: Array,
+        time: float,
+        advective: Array | None,
+        order: int,
+    ) -> None:
         self.solver, self.state, self.points, self.time = solver, state, points, time
         self.mesh_velocity = mesh_velocity
         self._rate, self._advective, self._order = rate, advective, order
         self.linear = advective is not None or not solver.convecting
+        self.converged = False
         self._load = self._external(history)
         self._matrix: Array | None = None
-        self._factor: CondensedFactor | None = None
+        self._factor: Solver | None = None
         self._unknowns = np.concatenate([state.velocity.ravel(), state.pressure])
         self._residual: Array | None = None
 
@@ -254,7 +279,7 @@ class FluidStep:
         interface : ndarray, shape (k, 2)
             In the order of the solver's ``interface``.
         max_iterations : int, optional
-            Newton iterations to make at most; stopping there is not an error.
+            Newton iterations to make at most; stopping there is not an error, see ``converged``.
 
         Returns
         -------
@@ -266,6 +291,7 @@ class FluidStep:
         NewtonError
             If Newton's method does not converge within the case's limit.
         """
+        self.converged = False
         n = 2 * self.solver.space.velocity_count
         start = self._unknowns[:n].reshape(-1, 2)
         velocity = self.solver.boundary.impose(start, self.points, self.mesh_velocity, interface, self.time)
@@ -274,7 +300,8 @@ class FluidStep:
         if enclosed:
             geometry, flux = self.solver.geometry(self.points)[0], self.solver.pressure_work(self.points)
             enclosed.balance(self._load, velocity, geometry, flux)
-        unknowns = self._solve_linear(unknowns) if self.linear else self._solve_newton(unknowns, max_iterations)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found below
+            unknowns = self._solve_linear(unknowns) if self.linear else self._solve_newton(unknowns, max_iterations)
         if enclosed and self._residual is not None:
             enclosed.remove_mean(unknowns[n:], self._residual, geometry, flux)
         self._unknowns = unknowns
@@ -295,6 +322,7 @@ class FluidStep:
         unknowns = unknowns + self._factor.solve(self._imbalance(self._matrix, unknowns))
         solver.counts.solves += 1
         self._residual = self._imbalance(self._matrix, unknowns)
+        self.converged = True
         return unknowns
 
     def _solve_newton(self, unknowns: Array, max_iterations: int | None) -> Array:
@@ -304,7 +332,15 @@ class FluidStep:
         A, norm, scale = self._linearise(unknowns)
         for iteration in range(limit + 1):
             if norm <= settings.tolerance * scale:
+                self.converged = True
                 return unknowns
+            if not np.isfinite(norm):
+                raise NewtonError(
+                    f"the residual is not finite after {iteration} iterations. Lower the time step or the Reynolds "
+                    "number, or check the given velocities.",
+                    "diverged",
+                    f"fluid, t = {self.time:g}",
+                )
             if iteration == limit:
                 break
             J = A.copy()
@@ -319,8 +355,11 @@ class FluidStep:
         if max_iterations is None:
             raise NewtonError(
                 f"Newton's method stopped at a relative residual of {norm / scale:.2g} after {limit} iterations; "
-                f"expected below {settings.tolerance:g}. Refine the mesh, lower the Reynolds number, march in time, or use "
-                "convection = \"picard\".", "max_iterations", f"fluid, t = {self.time:g}")
+                f"expected below {settings.tolerance:g}. Refine the mesh, lower the Reynolds number, march in time, or "
+                'use convection = "picard".',
+                "max_iterations",
+                f"fluid, t = {self.time:g}",
+            )
         return unknowns
 
     def _damped(self, unknowns: Array, delta: Array, norm: float) -> tuple[Array, Array, float, float]:
@@ -332,8 +371,6 @@ class FluidStep:
             if np.isfinite(new) and new <= 10.0 * norm:
                 break
             factor *= 0.5
-        if not np.isfinite(new):
-            raise NewtonError("the residual is not finite.", "diverged", f"fluid, t = {self.time:g}")
         return trial, A, new, scale
 
     def _linearise(self, unknowns: Array) -> tuple[Array, float, float]:
@@ -352,7 +389,7 @@ class FluidStep:
         residual = self._in_frames(assemble_vector(dofs, self._residual, size))
         return A, float(np.linalg.norm(residual[free])), float(np.linalg.norm(scale)) or 1.0
 
-    def _free_rows(self, system: CondensedSystem) -> Index:
+    def _free_rows(self, system: FluidSystem) -> Index:
         inner = system.dofs[:, system.boundary :].ravel()
         return np.concatenate([system.unknowns, inner])
 
@@ -384,6 +421,9 @@ class FluidStep:
         velocity, pressure = self._unknowns[:n].reshape(-1, 2), self._unknowns[n:]
         keep = 1 if self._order else 0
         return FluidState(
-            (velocity, *self.state.velocities[:keep]), pressure, (self.points, *self.state.points[:keep]),
-            self.reaction(), self.time,
+            (velocity, *self.state.velocities[:keep]),
+            pressure,
+            (self.points, *self.state.points[:keep]),
+            self.reaction(),
+            self.time,
         )

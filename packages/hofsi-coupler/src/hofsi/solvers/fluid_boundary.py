@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from hoblock import QuadMesh
 from numpy.typing import NDArray
 
+from hoblock import QuadMesh
 from hofsi import case
 from hofsi.fem.constraints import DirectedNodes, NodeConstraints
 from hofsi.fem.geometry import SideGeometry, physical_gradients, side_geometry
 from hofsi.fem.normals import consistent_normals
 from hofsi.fem.spaces import TaylorHood
 
+if TYPE_CHECKING:
+    from hoblock.expressions import Expression
+
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 __all__ = ["FluidBoundary"]
+
+_SAME = 1e-12  # change of a unit normal that is round-off
 
 
 def _sides(mesh: QuadMesh, names: Sequence[str]) -> Index:
@@ -26,6 +32,14 @@ def _sides(mesh: QuadMesh, names: Sequence[str]) -> Index:
 
 def _nodes(mesh: QuadMesh, names: Sequence[str]) -> Index:
     return np.unique(np.concatenate([mesh.edge_nodes(name) for name in names]))
+
+
+def _same_directions(first: Sequence[DirectedNodes], second: Sequence[DirectedNodes]) -> bool:
+    """Whether two lists constrain the same nodes along the same directions, but for round-off."""
+    return len(first) == len(second) and all(
+        np.array_equal(a.nodes, b.nodes) and np.abs(a.directions - b.directions).max(initial=0.0) < _SAME
+        for a, b in zip(first, second, strict=True)
+    )
 
 
 class FluidBoundary:
@@ -44,8 +58,14 @@ class FluidBoundary:
     viscosity : float
     """
 
-    def __init__(self, mesh: QuadMesh, space: TaylorHood, conditions: Sequence[case.FluidCondition], interface: Index,
-                 viscosity: float) -> None:
+    def __init__(
+        self,
+        mesh: QuadMesh,
+        space: TaylorHood,
+        conditions: Sequence[case.FluidCondition],
+        interface: Index,
+        viscosity: float,
+    ) -> None:
         self._mesh, self._space, self._viscosity = mesh, space, viscosity
         self.interface = interface
         walls = [c for c in conditions if isinstance(c, case.NoSlip)]
@@ -55,12 +75,14 @@ class FluidBoundary:
         self._slip = _sides(mesh, [name for c in slips for name in c.on]) if slips else np.zeros((0, 2), dtype=np.int64)
         self._loads = [(c, _sides(mesh, c.on)) for c in conditions if isinstance(c, case.Traction | case.Pressure)]
         self._partial = [
-            (c, _sides(mesh, c.on)) for c in conditions if isinstance(c, case.Velocity) and (c.traction_x or c.traction_y)
+            (c, _sides(mesh, c.on))
+            for c in conditions
+            if isinstance(c, case.Velocity) and (c.traction_x or c.traction_y)
         ]
         free = [c for c in conditions if isinstance(c, case.DoNothing)]
         self._open = _sides(mesh, [name for c in free for name in c.on]) if free else np.zeros((0, 2), dtype=np.int64)
-        self.enclosed = not (self._loads or self._open.size or any(c.x is None or c.y is None for c, _ in self._given))
         self._constraints: NodeConstraints | None = None
+        self._slipping: list[DirectedNodes] = []
         self._constraints_at: Array | None = None
 
     @property
@@ -69,29 +91,28 @@ class FluidBoundary:
         return np.union1d(self.interface, self.walls)
 
     def constraints(self, points: Array) -> NodeConstraints:
-        """Constraints at given node positions; kept as long as the slip edges do not move."""
-        if self._constraints is None or (self._slip.size and not self._same_slip(points)):
-            self._constraints = NodeConstraints(len(points), [entry for entry in self._entries(points)])
-            self._constraints_at = points
+        """Constraints at given node positions; the same object as long as the normals of the slip edges stay."""
+        if self._constraints is None or (self._slip.size and points is not self._constraints_at):
+            slipping = self._slip_entries(points)
+            if self._constraints is None or not _same_directions(slipping, self._slipping):
+                self._constraints = NodeConstraints(len(points), [*self._fixed_entries(), *slipping])
+                self._slipping = slipping
+        self._constraints_at = points
         return self._constraints
 
-    def _same_slip(self, points: Array) -> bool:
-        before = self._constraints_at
-        if before is None or before is points:
-            return before is points
-        nodes = self._space.velocity_cells[self._slip[:, 0]]
-        return bool(np.array_equal(before[nodes], points[nodes]))
-
-    def _entries(self, points: Array) -> list[DirectedNodes]:
+    def _fixed_entries(self) -> list[DirectedNodes]:
         entries = [DirectedNodes.component(nodes, axis) for nodes in (self.interface, self.walls) for axis in range(2)]
         for condition, nodes in self._given:
             for axis, component in enumerate((condition.x, condition.y)):
                 if component is not None:
                     entries.append(DirectedNodes.component(nodes, axis))
-        if self._slip.size:
-            entries += consistent_normals(points[self._space.velocity_cells], self._space.velocity_cells, self._slip,
-                                          self._space.velocity_sides)
         return entries
+
+    def _slip_entries(self, points: Array) -> list[DirectedNodes]:
+        if not self._slip.size:
+            return []
+        space = self._space
+        return consistent_normals(points[space.velocity_cells], space.velocity_cells, self._slip, space.velocity_sides)
 
     def impose(self, velocity: Array, points: Array, mesh_velocity: Array, interface: Array, time: float) -> Array:
         """Return the velocity with all constraints satisfied.
@@ -108,8 +129,10 @@ class FluidBoundary:
             x, y = points[nodes].T
             values += [c.evaluate(x=x, y=y, t=time) for c in (condition.x, condition.y) if c is not None]
         constraints = self.constraints(points)
-        values += [np.sum(entry.directions * mesh_velocity[entry.nodes], axis=1)
-                   for entry in constraints.entries[len(values):]]
+        values += [
+            np.sum(entry.directions * mesh_velocity[entry.nodes], axis=1)
+            for entry in constraints.entries[len(values) :]
+        ]
         return constraints.impose(velocity, values)
 
     def add_loads(self, f: Array, points: Array, time: float) -> None:
@@ -119,19 +142,22 @@ class FluidBoundary:
         X = points[self._space.velocity_cells]
         for condition, sides in [*self._loads, *self._partial]:
             for side in side_geometry(X, sides, self._space.velocity_sides):
-                traction = self._traction(condition, side, time)
+                traction = self.traction(condition, side, time)
                 local = side.table.N.T @ traction
                 np.add.at(f, side.elements, self._space.local_vector(local))
 
     @staticmethod
-    def _traction(condition: case.FluidCondition, side: SideGeometry, time: float) -> Array:
-        """Traction times length and weight at the points of a side, shape (k, q, 2)."""
+    def traction(condition: case.FluidCondition | None, side: SideGeometry, time: float) -> Array:
+        """Given traction times length and weight at the points of sides, shape (k, q, 2); 0 where none is given."""
         x, y = side.x[..., 0], side.x[..., 1]
         if isinstance(condition, case.Pressure):
             return np.asarray(-condition.value.evaluate(x=x, y=y, t=time)[..., None] * side.normals)
-        pair = (condition.x, condition.y) if isinstance(condition, case.Traction) else (
-            condition.traction_x, condition.traction_y)  # type: ignore[union-attr]
-        values = [np.zeros_like(x) if c is None else np.broadcast_to(c.evaluate(x=x, y=y, t=time), x.shape) for c in pair]
+        pair: tuple[Expression | None, Expression | None] = (None, None)
+        if isinstance(condition, case.Traction):
+            pair = condition.x, condition.y
+        elif isinstance(condition, case.Velocity):
+            pair = condition.traction_x, condition.traction_y
+        values = [np.zeros_like(x) if c is None else c.evaluate(x=x, y=y, t=time) for c in pair]
         return np.stack(values, axis=-1) * side.lengths[..., None]
 
     def add_do_nothing(self, A: Array, points: Array) -> None:

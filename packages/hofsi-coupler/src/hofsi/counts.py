@@ -1,0 +1,32 @@
+"""How often a solver did its expensive things."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Counts"]
+
+
+@dataclass
+class Counts:
+    """How often a solver did its expensive things.
+
+    Attributes
+    ----------
+    geometries : int
+        Geometry factors of a whole mesh.
+    constant_assemblies : int
+        Element matrices without the terms that change from iteration to iteration.
+    assemblies : int
+        Element matrices that are factorised.
+    factorisations, solves : int
+    iterations : int
+        Nonlinear iterations.
+    """
+
+    geometries: int = 0
+    constant_assemblies: int = 0
+    assemblies: int = 0
+    factorisations: int = 0
+    solves: int = 0
+    iterations: int = 0

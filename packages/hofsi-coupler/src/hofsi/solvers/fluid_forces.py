@@ -1,0 +1,212 @@
+"""The force of the fluid on parts of its boundary, by the residual of the momentum equation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hoblock import QuadMesh
+from hoblock.numbering import side_nodes
+from hofsi import case
+from hofsi.errors import CaseError
+from hofsi.fem.element import boundary_first
+from hofsi.fem.geometry import SideGeometry, physical_gradients, side_geometry
+from hofsi.solvers.fluid import FluidSolver, FluidState
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["BoundaryForce", "boundary_sides"]
+
+
+def boundary_sides(mesh: QuadMesh) -> Index:
+    """Element sides that belong to one element only, shape (k, 2): (element, side)."""
+    pairs = np.sort(mesh.corners[:, [[0, 1], [1, 2], [2, 3], [3, 0]]].reshape(-1, 2), axis=1)
+    _, inverse, counts = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    alone = np.flatnonzero(counts[inverse.ravel()] == 1)
+    return np.stack([alone // 4, alone % 4], axis=-1)
+
+
+@dataclass(frozen=True)
+class _Corner:
+    """A side with given velocity that meets the set in one node.
+
+    Attributes
+    ----------
+    element, side, node : int
+        ``node`` is local, in the order of the velocity space.
+    given : tuple of bool
+        Components whose velocity is given; the residual holds the traction of these only.
+    slip : bool
+        Of the traction only the part along the normal counts.
+    """
+
+    element: int
+    side: int
+    node: int
+    given: tuple[bool, bool]
+    slip: bool
+
+
+class BoundaryForce:
+    """Force of the fluid on some named edges: minus the sum of the momentum residual over their nodes.
+
+    The residual at a node is what holds the fluid there: ∫ φ σ·n over all sides at the node whose velocity is given.
+    Where an edge of the set meets such a side outside the set, for example the wall and the inlet of a channel, that
+    side's share ∫ φ σ·n is integrated directly and taken off. A set of closed contours has no such node and costs only
+    a sum.
+
+    Where the traction is given instead of the velocity, or is that of the do-nothing condition, the residual vanishes
+    and the force is minus the integral of that traction.
+
+    Parameters
+    ----------
+    solver : FluidSolver
+    names : sequence of str
+        Of the mesh's edges; each side counts once.
+
+    Raises
+    ------
+    CaseError
+        If a name is unknown or its edges are not at the fluid's boundary.
+
+    References
+    ----------
+    Gresho, Sani: Incompressible Flow and the Finite Element Method, Wiley 1998, Section 3.8 (consistent fluxes).
+    John, Matthies, Int. J. Numer. Meth. Fluids 37 (2001) 885–903, doi:10.1002/fld.195.
+    """
+
+    def __init__(self, solver: FluidSolver, names: Sequence[str]) -> None:
+        mesh = solver.mesh
+        outer = boundary_sides(mesh)
+        chosen = _named_sides(mesh, names, outer)
+        conditions = _conditions(mesh, solver.fluid.boundaries)
+        self._solver = solver
+        self._nodes = np.unique(mesh.cells[chosen[:, 0, None], side_nodes(mesh.order)[chosen[:, 1]]])
+        self._loaded = [
+            (condition, sides)
+            for condition in solver.fluid.boundaries
+            if not all(_given(condition)) and (sides := _part_of(chosen, mesh, condition.on)).size
+        ]
+        inside = set(map(tuple, chosen.tolist()))
+        others = [(element, side) for element, side in outer.tolist() if (element, side) not in inside]
+        self._corners = sorted(_corners(mesh, others, conditions, self._nodes), key=lambda corner: corner.side)
+
+    def evaluate(self, state: FluidState) -> Array:
+        """Return the force at a state that the solver has computed, shape (2,)."""
+        force = -state.reaction[self._nodes].sum(axis=0)
+        for condition, sides in self._loaded:
+            force -= np.where(_given(condition), 0.0, self._load(condition, sides, state))
+        if self._corners:
+            force += self._at_corners(state)
+        return np.asarray(force)
+
+    def _load(self, condition: case.FluidCondition, sides: Index, state: FluidState) -> Array:
+        """Integral of the traction that a condition gives, shape (2,)."""
+        solver = self._solver
+        total = np.zeros(2)
+        for group in side_geometry(state.points[0][solver.space.velocity_cells], sides, solver.space.velocity_sides):
+            if isinstance(condition, case.DoNothing):
+                given = _transposed(solver, group, _gradient(solver, group, group.elements, state))
+            else:
+                given = solver.boundary.traction(condition, group, state.time)
+            total += given.sum(axis=(0, 1))
+        return total
+
+    def _at_corners(self, state: FluidState) -> Array:
+        """Sum of ∫ φ σ·n over the sides outside the set, shape (2,)."""
+        solver, corners = self._solver, self._corners
+        cells = solver.space.velocity_cells[[corner.element for corner in corners]]
+        rows = np.array([[k, corner.side] for k, corner in enumerate(corners)])
+        total = np.zeros(2)
+        for group in side_geometry(state.points[0][cells], rows, solver.space.velocity_sides):
+            members = [corners[k] for k in group.elements]
+            traction = _traction(solver, group, np.array([corner.element for corner in members]), state)
+            for corner, t, n in zip(members, traction, group.normals, strict=True):
+                if corner.slip:
+                    t = n * (np.sum(t * n, axis=-1) / np.sum(n * n, axis=-1))[:, None]
+                total += np.where(corner.given, group.table.N[:, corner.node] @ t, 0.0)
+        return total
+
+
+def _corners(
+    mesh: QuadMesh,
+    sides: Sequence[tuple[int, int]],
+    conditions: dict[tuple[int, int], case.FluidCondition],
+    nodes: Index,
+) -> Iterator[_Corner]:
+    """Where some sides with given velocity meet some nodes."""
+    position = np.argsort(boundary_first(mesh.order)[0])
+    ends = side_nodes(mesh.order)[:, [0, -1]]
+    for element, side in sides:
+        condition = conditions.get((element, side))
+        given = _given(condition)
+        if any(given):
+            for node in ends[side][np.isin(mesh.cells[element, ends[side]], nodes)]:
+                yield _Corner(element, side, int(position[node]), given, isinstance(condition, case.Slip))
+
+
+def _gradient(solver: FluidSolver, group: SideGeometry, elements: Index, state: FluidState) -> Array:
+    """∂_b u_a at the points of sides, shape (k, q, a, b)."""
+    u = state.velocity[solver.space.velocity_cells[elements]]
+    return np.stack([dN @ u for dN in physical_gradients(group, group.table)], axis=-1)
+
+
+def _transposed(solver: FluidSolver, group: SideGeometry, gradient: Array) -> Array:
+    """μ (∇u)ᵀ·n times length and weight, shape (k, q, 2): the traction that the do-nothing condition leaves."""
+    return np.asarray(solver.fluid.viscosity * np.einsum("kqba,kqb->kqa", gradient, group.normals))
+
+
+def _traction(solver: FluidSolver, group: SideGeometry, elements: Index, state: FluidState) -> Array:
+    """σ·n times length and weight at the points of sides of some elements, shape (k, q, 2)."""
+    gradient = _gradient(solver, group, elements, state)
+    p = state.pressure[solver.space.pressure_cells[elements]] @ solver.space.pressure_sides[group.number].N.T
+    along = solver.fluid.viscosity * np.einsum("kqab,kqb->kqa", gradient, group.normals)
+    return np.asarray(along + _transposed(solver, group, gradient) - p[..., None] * group.normals)
+
+
+def _named_sides(mesh: QuadMesh, names: Sequence[str], outer: Index) -> Index:
+    for name in names:
+        if name not in mesh.edge_groups:
+            known = ", ".join(sorted(mesh.edge_groups))
+            raise CaseError(f"no edges named {name!r} at the fluid; known: {known}. Correct the name.", "force.on")
+    sides = np.unique(np.concatenate([mesh.edge_groups[name] for name in names]), axis=0)
+    wrong = ~np.isin(sides @ [4, 1], outer @ [4, 1])
+    if wrong.any():
+        raise CaseError(
+            f"{int(wrong.sum())} element sides of {', '.join(names)} have the fluid on both sides; "
+            "expected edges of the fluid's boundary. Use other names.",
+            "force.on",
+        )
+    return sides
+
+
+def _conditions(
+    mesh: QuadMesh, conditions: Sequence[case.FluidCondition]
+) -> dict[tuple[int, int], case.FluidCondition]:
+    return {
+        (int(element), int(side)): condition
+        for condition in conditions
+        for name in condition.on
+        for element, side in mesh.edge_groups[name]
+    }
+
+
+def _given(condition: case.FluidCondition | None) -> tuple[bool, bool]:
+    """Which components of the velocity are given; a side without a condition is wet by a solid.
+
+    Slip counts as both: what is not given there, the tangential traction, is zero.
+    """
+    if isinstance(condition, case.Velocity):
+        return condition.x is not None, condition.y is not None
+    free = isinstance(condition, case.Traction | case.Pressure | case.DoNothing)
+    return not free, not free
+
+
+def _part_of(sides: Index, mesh: QuadMesh, names: Sequence[str]) -> Index:
+    """Those of some sides that belong to some names."""
+    named = np.concatenate([mesh.edge_groups[name] for name in names])
+    return np.asarray(sides[np.isin(sides @ [4, 1], named @ [4, 1])])

@@ -1,0 +1,65 @@
+"""The linear systems of the fluid, direct or iterative as the case asks for."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi.case import LinearSettings
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.constraints import NodeConstraints
+from hofsi.fem.saddle_point import SaddlePointSystem
+from hofsi.fem.spaces import TaylorHood
+from hofsi.linear.solver import Solver
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["FluidSystem", "fluid_system"]
+
+
+class FluidSystem(Protocol):
+    """Pattern of linear systems on the same elements and constraints.
+
+    Attributes
+    ----------
+    dofs : ndarray, shape (e, k)
+        Global numbers of the local unknowns of each element; those on the element's boundary first.
+    boundary : int
+        How many local unknowns lie on the element's boundary.
+    unknowns : ndarray
+        Free unknowns on the elements' boundaries.
+    """
+
+    dofs: Index
+    boundary: int
+    unknowns: Index
+
+    def factorise(self, A: Array) -> Solver:
+        """Make what solves, from element vectors (e, k) to all unknowns, with element matrices (e, k, k)."""
+        ...
+
+
+def fluid_system(
+    space: TaylorHood, constraints: NodeConstraints, pinned: tuple[int, ...], linear: LinearSettings, weights: Array
+) -> FluidSystem:
+    """Choose the linear systems of a fluid.
+
+    Parameters
+    ----------
+    space : TaylorHood
+    constraints : NodeConstraints
+        Of the velocity.
+    pinned : tuple of int
+        Pressure unknowns that are held fixed.
+    linear : LinearSettings
+    weights : ndarray, shape (e, q)
+        Integration weights of the elements.
+    """
+    if linear.solver == "direct":
+        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned)
+    mass = np.zeros(space.velocity_count)
+    np.add.at(mass, space.velocity_cells, weights @ space.velocity.N**2)
+    return SaddlePointSystem(space, constraints, pinned, mass, linear.tolerance)

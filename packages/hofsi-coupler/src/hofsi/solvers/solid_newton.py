@@ -1,0 +1,274 @@
+"""Newton's method for one step of a solid, with factors of the tangent that are kept while they serve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi.case import NonlinearSettings
+from hofsi.counts import Counts
+from hofsi.errors import ConvergenceError, NewtonError
+from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.solvers.solid_equations import SolidEquations
+from hofsi.solvers.solid_loads import FollowerPressure
+from hofsi.solvers.solid_supports import SolidSupports
+
+Array = NDArray[np.float64]
+
+__all__ = ["SolidNewton", "Tangent"]
+
+_PATIENCE = 8.0  # more iterations than this with an old tangent cost more than a new one
+_SMALLEST_PART = 2.0**-10  # of the load, in continuation
+_ROUNDING = 0.25  # of the estimated rounding error, which measured residuals reach between a fiftieth and a seventh
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """Element matrices and their factors.
+
+    Attributes
+    ----------
+    mass_factor : float
+        Of the mass in ``K``.
+    K : ndarray, shape (e, k, k)
+    factor : CondensedFactor
+    """
+
+    mass_factor: float
+    K: Array
+    factor: CondensedFactor
+
+
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """An iterate, its displacement gradient and stress, and the residual left there."""
+
+    displacement: Array
+    gradient: Array
+    stress: Array
+    residual: Array
+    norm: float
+    scale: float
+
+    @property
+    def finite(self) -> bool:
+        return bool(np.isfinite(self.norm))
+
+
+class SolidNewton:
+    """Solves internal force(d) + mass · (c d + history) = force + pressures(d) under the supports of one time.
+
+    A tangent is factorised when the one at hand makes too little progress, so that repeated solutions with slightly
+    different forces, as in coupling iterations, share one. Its geometric stiffness takes the stress
+    linearised about the last iterate, at first that of the last solution, instead of the iterate's own. The two agree
+    in the limit, hence convergence stays quadratic. Far away the iterate's own stress is dominated in thin bodies by
+    the membrane stress that any finite increment of rotation leaves behind, and Newton's method would follow that.
+
+    Parameters
+    ----------
+    equations : SolidEquations
+    supports : SolidSupports
+    system : CondensedSystem
+    settings : NonlinearSettings
+    counts : Counts
+        Updated.
+    time : float
+        Of supports and messages.
+    mass_factor : float
+        c, 0 for statics.
+    history : ndarray, shape (n, 2), or None
+        Part of the acceleration that does not depend on d.
+    pressures : list of FollowerPressure
+    stress : ndarray, shape (e, q, 3)
+        Of the last solution.
+    tangent : Tangent, optional
+        To begin with.
+
+    Attributes
+    ----------
+    tangent : Tangent or None
+        The one at hand.
+
+    References
+    ----------
+    Magisano, Leonetti, Garcea: How to improve efficiency and robustness of the Newton method in geometrically
+    non-linear structural problem discretized via displacement-based finite elements, Comput. Methods Appl. Mech. Eng.
+    313 (2017) 986–1005, doi:10.1016/j.cma.2016.10.023.
+    """
+
+    def __init__(
+        self,
+        equations: SolidEquations,
+        supports: SolidSupports,
+        system: CondensedSystem,
+        settings: NonlinearSettings,
+        counts: Counts,
+        time: float,
+        mass_factor: float,
+        history: Array | None,
+        pressures: list[FollowerPressure],
+        stress: Array,
+        tangent: Tangent | None = None,
+    ) -> None:
+        self._equations, self._supports, self._system = equations, supports, system
+        self._settings, self._counts, self._time = settings, counts, time
+        self._mass_factor, self._pressures = mass_factor, pressures
+        self._inertia = None if history is None else equations.mass @ history
+        self._stress = stress
+        self.tangent = tangent
+        self._floor: float | None = None
+
+    def residual(self, displacement: Array, force: Array) -> Array:
+        """What the supports must add for equilibrium, shape (n, 2)."""
+        return self._at(displacement, force, 0.0).residual
+
+    def solve(self, start: Array, force: Array, tolerance: float) -> Array:
+        """Find the displacement from a starting value.
+
+        Parameters
+        ----------
+        start : ndarray, shape (n, 2)
+        force : ndarray, shape (n, 2)
+            Nodal forces that do not depend on the displacement.
+        tolerance : float
+            Of the residual, relative to the largest of the forces in balance.
+
+        Raises
+        ------
+        NewtonError
+            If the method does not converge.
+        LinearSolverError
+            If a tangent is singular.
+        """
+        target = self._supports.impose(start, self._time)
+        return self._iterate(start, target - start, force, 0.0, tolerance)
+
+    def solve_by_parts(self, start: Array, force: Array, tolerance: float) -> Array:
+        """Find the displacement by applying what is out of balance at the start little by little.
+
+        Raises
+        ------
+        NewtonError, LinearSolverError
+            If the method does not converge with 1/1024 of the imbalance either.
+        """
+        imbalance = self.residual(start, force)
+        movement = self._supports.impose(start, self._time) - start
+        done, part, d = 0.0, 0.25, start
+        self.tangent = None
+        self._stress = self._equations.stress(self._equations.gradient(start))
+        while done < 1.0:
+            reached = min(1.0, done + part)
+            last = reached == 1.0
+            try:
+                d = self._iterate(
+                    d,
+                    (reached - done) * movement,
+                    force,
+                    (1.0 - reached) * imbalance,
+                    tolerance if last else max(tolerance, 1e-6),
+                )
+            except ConvergenceError as error:
+                part *= 0.25
+                if part < _SMALLEST_PART:
+                    raise type(error)(
+                        f"{error.problem} Applied little by little, {done:.3g} of the load was reached.",
+                        error.reason,
+                        error.where,
+                    ) from error
+                self.tangent = None
+                continue
+            done, part = reached, 2.0 * part
+        return d
+
+    def _at(self, displacement: Array, force: Array, offset: Array | float) -> _Point:
+        """Evaluate the residual."""
+        eq = self._equations
+        gradient = eq.gradient(displacement)
+        with np.errstate(over="ignore", invalid="ignore"):
+            stress = eq.stress(gradient)
+            internal = eq.internal_force(gradient, stress)
+            external = force
+            if self._pressures:
+                external = force.copy()
+                for pressure in self._pressures:
+                    pressure.add_force(external, displacement)
+            residual = internal - external
+            scale = max(float(np.linalg.norm(internal)), float(np.linalg.norm(external)))
+            if self._inertia is not None:
+                inertia = self._mass_factor * (eq.mass @ displacement) + self._inertia
+                residual += inertia
+                scale = max(scale, float(np.linalg.norm(inertia)))
+            norm = float(np.linalg.norm(self._supports.free_part(residual - offset)))
+        return _Point(displacement, gradient, stress, residual, norm, scale)
+
+    def _iterate(self, start: Array, movement: Array, force: Array, offset: Array | float, tolerance: float) -> Array:
+        point = self._at(start, force, offset)
+        moving = bool(movement.any())
+        fresh, poor = False, False
+        geometric = self._stress
+        for iteration in range(self._settings.max_iterations + 1):
+            if not point.finite:
+                raise self._error("the residual is not finite.", "diverged")
+            if not moving and self._converged(point, tolerance, iteration):
+                self._stress = point.stress
+                return point.displacement
+            if iteration == self._settings.max_iterations:
+                break
+            if self.tangent is None or poor:
+                self.tangent = self._linearise(point, geometric)
+                fresh = True
+            increment = self._increment(self.tangent, point, offset, movement if moving else None)
+            trial = self._at(point.displacement + increment, force, offset)
+            self._counts.iterations += 1
+            rate = np.inf if moving or point.norm == 0.0 else trial.norm / point.norm
+            if not (fresh or moving or self._equations.linear or rate < 1.0):
+                poor = True  # the iterate is given up, not only the tangent
+                continue
+            poor = self._too_slow(rate, trial, tolerance)
+            geometric = trial.stress - self._equations.quadratic_stress(self._equations.gradient(increment))
+            point, moving, fresh = trial, False, False
+        raise self._error(
+            f"Newton's method stopped at a relative residual of {point.norm / point.scale:.2g} after "
+            f"{self._settings.max_iterations} iterations; expected below {tolerance:g}. Take smaller time steps, apply "
+            "the load more slowly, or refine the mesh.",
+            "max_iterations",
+        )
+
+    def _converged(self, point: _Point, tolerance: float, iteration: int) -> bool:
+        if point.norm <= tolerance * point.scale:
+            return True
+        if iteration < 2:
+            return False
+        if self._floor is None:
+            inertia = self._mass_factor * (self._equations.mass @ np.abs(point.displacement))
+            self._floor = self._equations.rounding(point.displacement, point.gradient)
+            self._floor += float(np.finfo(float).eps * np.linalg.norm(inertia))
+        return point.norm <= _ROUNDING * self._floor
+
+    def _too_slow(self, rate: float, point: _Point, tolerance: float) -> bool:
+        """Whether the tangent at hand would need more iterations than a new one is worth."""
+        if self._equations.linear or rate == 0.0 or point.norm <= tolerance * point.scale:
+            return False
+        if not rate < 1.0:
+            return True
+        return bool(np.log(tolerance * point.scale / point.norm) / np.log(rate) > _PATIENCE)
+
+    def _linearise(self, point: _Point, geometric: Array) -> Tangent:
+        K = self._equations.tangent(point.gradient, geometric, self._mass_factor, self._pressures)
+        self._counts.assemblies += 1
+        factor = self._system.factorise(K)
+        self._counts.factorisations += 1
+        return Tangent(self._mass_factor, K, factor)
+
+    def _increment(self, tangent: Tangent, point: _Point, offset: Array | float, movement: Array | None) -> Array:
+        r = offset - point.residual
+        if movement is not None:
+            r -= self._equations.applied(tangent.K, movement)
+        increment = tangent.factor.solve(self._equations.shared(r)).reshape(-1, 2)
+        self._counts.solves += 1
+        return increment if movement is None else increment + movement
+
+    def _error(self, message: str, reason: str) -> NewtonError:
+        return NewtonError(message, reason, f"solid, t = {self._time:g}")

@@ -1,0 +1,43 @@
+"""The linear systems of solids, direct or iterative as the case asks for."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import scipy.sparse as sp
+
+from hofsi.case import LinearSettings
+from hofsi.fem.coarsening import skeleton_coarsening
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.linear.amg import Coarsening, PatchMultigrid
+from hofsi.linear.krylov import KrylovSolver
+from hofsi.solvers.solid_equations import SolidEquations
+from hofsi.solvers.solid_supports import SolidSupports
+
+__all__ = ["solid_system"]
+
+
+def solid_system(equations: SolidEquations, supports: SolidSupports, linear: LinearSettings) -> CondensedSystem:
+    """Choose the linear systems of solids.
+
+    With "amg" the condensed matrix is solved by FGMRES, preconditioned by one multigrid cycle that knows the rigid body
+    motions. The residual then reaches the tolerance or, in thin plates, what rounding leaves.
+
+    Parameters
+    ----------
+    equations : SolidEquations
+    supports : SolidSupports
+    linear : LinearSettings
+    """
+    mesh = equations.mesh
+    size, constraints = 2 * len(mesh.points), supports.constraints
+    system = CondensedSystem(equations.dofs, equations.boundary, size, constraints)
+    if linear.solver == "direct":
+        return system
+    nodes = equations.dofs[:, : equations.boundary : 2] // 2
+    coarsening = skeleton_coarsening(nodes, mesh.order, constraints, system.unknowns, mesh.points)
+    return system.solved_by(partial(_multigrid_solver, coarsening, linear.tolerance))
+
+
+def _multigrid_solver(coarsening: Coarsening, tolerance: float, matrix: sp.csc_matrix) -> KrylovSolver:
+    return KrylovSolver(matrix, PatchMultigrid(matrix, coarsening, symmetric=True), tolerance)
