@@ -61,6 +61,12 @@ def test_enclosed_fluid_cannot_be_coupled(read_changed: Read, closed: str) -> No
         read_changed(('type = "do-nothing"', closed))
 
 
+def test_enclosed_fluid_may_be_coupled_at_rest(read_changed: Read) -> None:
+    case = read_changed(('type = "do-nothing"', 'type = "no-slip"'), *STEADY)
+    assert case.fluid is not None
+    assert case.solids
+
+
 @pytest.mark.parametrize(
     "opened",
     [

@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from hoblock import BlockStructure, HoblockError, QuadMesh, det_jacobian_bounds, generate
-from hoblock.build import build_structure
 from numpy.typing import NDArray
 
+from hoblock import BlockStructure, HoblockError, QuadMesh, det_jacobian_bounds, generate
+from hoblock.build import build_structure
 from hofsi import case
 from hofsi.case_checks import check_order
+from hofsi.clock import Clock
+from hofsi.counts import Counts
 from hofsi.errors import CaseError
 from hofsi.marching import FluidMarch, March, SolidMarch
-from hofsi.records import Clock, Counts
 
 if TYPE_CHECKING:
     from hoblock.movers import Mover
-
     from hofsi.coupling.interface import Interface
     from hofsi.coupling.relaxation import Accelerator
     from hofsi.motion import DrivenEdges
@@ -198,9 +198,19 @@ def _mover(settings: case.MoverSettings, structure: BlockStructure, driven: Inde
     from hoblock.movers import AngleOptimisation
 
     return AngleOptimisation(
-        structure, driven, power=settings.power, sweeps=settings.sweeps, iterations=settings.iterations,
-        lower=settings.lower, upper=settings.upper, penalty=settings.penalty, radius=settings.radius,
-        projection=settings.projection, damping=settings.damping, predictor=settings.predictor, ideal=settings.ideal,
+        structure,
+        driven,
+        power=settings.power,
+        sweeps=settings.sweeps,
+        iterations=settings.iterations,
+        lower=settings.lower,
+        upper=settings.upper,
+        penalty=settings.penalty,
+        radius=settings.radius,
+        projection=settings.projection,
+        damping=settings.damping,
+        predictor=settings.predictor,
+        ideal=settings.ideal,
     )
 
 

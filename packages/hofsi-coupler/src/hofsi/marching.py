@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hofsi.records import Clock, CouplingRecord, State
+from hofsi.clock import Clock
+from hofsi.records import CouplingRecord, State
 
 if TYPE_CHECKING:
     from hofsi.motion import MeshMotion, MeshState
@@ -50,8 +51,14 @@ class FluidMarch:
     clock : Clock
     """
 
-    def __init__(self, solver: FluidSolver, reference: MeshState, motion: MeshMotion | None,
-                 displacement: Callable[[float], Array] | None, clock: Clock) -> None:
+    def __init__(
+        self,
+        solver: FluidSolver,
+        reference: MeshState,
+        motion: MeshMotion | None,
+        displacement: Callable[[float], Array] | None,
+        clock: Clock,
+    ) -> None:
         self._solver, self._reference, self._motion = solver, reference, motion
         self._displacement, self._clock = displacement, clock
 
@@ -68,17 +75,19 @@ class FluidMarch:
 
     def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
         """Move the mesh and solve the fluid once."""
-        assert state.fluid is not None and state.mesh is not None
+        assert state.fluid is not None
+        assert state.mesh is not None
         mesh = self._mesh(state.mesh, time)
         with self._clock.phase("fluid"):
-            linear = self._solver.fluid.convection in ("auto", "extrapolated")
+            linear = self._solver.fluid.extrapolates(None)
             step = self._solver.begin_step(state.fluid, mesh.mesh.points, steps, time, linear=linear)
             step.solve(np.zeros((0, 2)))
             return State(fluid=step.accept(), mesh=mesh), None
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         """Solve for the steady flow on the mesh as it is."""
-        assert state.fluid is not None and state.mesh is not None
+        assert state.fluid is not None
+        assert state.mesh is not None
         with self._clock.phase("fluid"):
             step = self._solver.begin_steady(state.fluid, state.mesh.mesh.points)
             step.solve(np.zeros((0, 2)))

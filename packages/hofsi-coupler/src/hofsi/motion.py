@@ -5,12 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from hoblock import BlockStructure, InvalidMeshError, MoverError, QuadMesh, changed_blocks, det_jacobian_bounds, regenerate
+from numpy.typing import NDArray
+
+from hoblock import (
+    BlockStructure,
+    InvalidMeshError,
+    MoverError,
+    QuadMesh,
+    changed_blocks,
+    det_jacobian_bounds,
+    regenerate,
+)
 from hoblock.curves import NodalCurve
 from hoblock.generate import layout, raise_if_invalid
 from hoblock.movers import Mover
-from numpy.typing import NDArray
-
 from hofsi.errors import MeshMotionError
 
 Array = NDArray[np.float64]
@@ -50,7 +58,10 @@ def driven_edges(structure: BlockStructure, order: int, edges: tuple[int, ...]) 
     nodes = np.unique(np.concatenate(along))
     vertices = np.unique(structure.topology.edges[list(edges)])
     return DrivenEdges(
-        edges, nodes, tuple(np.searchsorted(nodes, line) for line in along), vertices,
+        edges,
+        nodes,
+        tuple(np.searchsorted(nodes, line) for line in along),
+        vertices,
         np.searchsorted(nodes, plan.vertex_nodes[vertices]),
     )
 
@@ -127,6 +138,8 @@ class MeshMotion:
                 raise_if_invalid(mesh, structure)
         except (InvalidMeshError, MoverError) as error:
             raise MeshMotionError(
-                f"{error} Use smaller steps, another [mover], or more blocks around the moving body.", "invalid mesh", where
+                f"{error} Use smaller steps, another [mover], or more blocks around the moving body.",
+                "invalid mesh",
+                where,
             ) from error
         return MeshState(structure, mesh, lower, int(changed_blocks(reference.structure, structure).sum()))

@@ -1,4 +1,4 @@
-"""Dirichlet–Neumann coupling: the solid's displacement drives the fluid, the fluid's momentum residual loads the solid."""
+"""Dirichlet–Neumann coupling: the solid drives the fluid, the fluid's momentum residual loads the solid."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi import case
+from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.predictors import predict
 from hofsi.coupling.relaxation import Accelerator
-from hofsi.errors import CouplingError
+from hofsi.errors import ConvergenceError, CouplingError
 from hofsi.motion import MeshMotion, MeshState
-from hofsi.records import Clock, CouplingRecord, State
+from hofsi.records import CouplingRecord, State
 from hofsi.solvers.fluid import FluidSolver, FluidState, FluidStep
 from hofsi.solvers.solid import SolidSolver, SolidState, SolidStep
 from hofsi.timestepping.schemes import bdf_weights
@@ -25,6 +26,7 @@ Array = NDArray[np.float64]
 __all__ = ["CoupledMarch"]
 
 _HISTORY = 4  # interface displacements kept: a cubic predictor needs four
+_SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
 _NEWTON = 2  # Newton iterations of the fluid in one coupling iteration
 
 
@@ -34,6 +36,7 @@ class _Fields:
 
     fluid: FluidStep
     mesh: MeshState
+    solid: SolidStep
     displacement: Array
 
 
@@ -54,9 +57,17 @@ class CoupledMarch:
     clock : Clock
     """
 
-    def __init__(self, fluid: FluidSolver, solid: SolidSolver, interface: Interface, motion: MeshMotion,
-                 prescribed: Callable[[float], Array], settings: case.CouplingSettings, accelerator: Accelerator,
-                 clock: Clock) -> None:
+    def __init__(
+        self,
+        fluid: FluidSolver,
+        solid: SolidSolver,
+        interface: Interface,
+        motion: MeshMotion,
+        prescribed: Callable[[float], Array],
+        settings: case.CouplingSettings,
+        accelerator: Accelerator,
+        clock: Clock,
+    ) -> None:
         self._fluid, self._solid, self._interface, self._motion = fluid, solid, interface, motion
         self._prescribed, self._settings = prescribed, settings
         self._accelerator, self._clock = accelerator, clock
@@ -88,8 +99,7 @@ class CoupledMarch:
         predicted = predict(state.interface, steps, self._settings.predictor)
         solid_step = self._solid.begin_step(solid, steps, time)
         implicit = self._settings.geometry == "implicit"
-        linear = self._fluid.fluid.convection == "extrapolated" or not (
-            implicit or self._fluid.fluid.convection in ("newton", "picard"))
+        linear = self._fluid.fluid.extrapolates(self._settings)
 
         def begin(d: Array, before: FluidStep | None) -> tuple[FluidStep, MeshState]:
             moved = self._move(mesh, d, time)
@@ -118,16 +128,56 @@ class CoupledMarch:
         return State(fields.fluid.accept(), accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1])), record
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
-        """Iterate steady flow and static equilibrium on meshes that fit the current displacement."""
-        fluid, solid, mesh = _parts(state)
-        time = fluid.time
+        """Iterate steady flow and static equilibrium on meshes that fit the current displacement.
+
+        The start is the initial displacement, if there is one, or the solid without the fluid's load. If that fails,
+        the load is applied in parts.
+        """
+        solid = _parts(state)[1]
         solid_step = self._solid.begin_static(solid)
+        with self._clock.phase("solid"):
+            start = unloaded = solid_step.solve(None)
+        if solid.displacement.any():
+            start = solid.displacement
+        try:
+            fields, record = self._steady(state, start, solid_step, 1.0)
+        except ConvergenceError:
+            fields, record = self._steady_by_parts(state, unloaded)
+        d = fields.displacement[self._interface.solid]
+        return State(fields.fluid.accept(), fields.solid.accept(fields.displacement), fields.mesh, (d,)), record
+
+    def _steady_by_parts(self, state: State, displacement: Array) -> tuple[_Fields, CouplingRecord]:
+        """Apply the fluid's load in parts, from one steady state to the next."""
+        done, part = 0.0, 0.25
+        while True:
+            reached = min(1.0, done + part)
+            try:
+                solid_step = self._solid.begin_static(_parts(state)[1])
+                fields, record = self._steady(state, displacement, solid_step, reached)
+            except ConvergenceError as error:
+                part *= 0.5
+                if part < _SMALLEST_PART:
+                    raise type(error)(
+                        f"{error.problem} Applied little by little, {done:.3g} of the fluid's load was reached.",
+                        error.reason,
+                        error.where,
+                    ) from error
+                continue
+            if reached == 1.0:
+                return fields, record
+            displacement, done, part = fields.displacement, reached, 1.5 * part
+
+    def _steady(
+        self, state: State, displacement: Array, solid_step: SolidStep, share: float
+    ) -> tuple[_Fields, CouplingRecord]:
+        """Steady state under a share of the fluid's load, sought from a displacement of the solid."""
+        fluid, _, mesh = _parts(state)
         at_rest = np.zeros((len(self._interface.fluid), 2))
         last: FluidStep | None = None
 
         def flow(d: Array) -> tuple[FluidStep, MeshState]:
             nonlocal last
-            moved = self._move(mesh, d, time)
+            moved = self._move(mesh, d, fluid.time)
             with self._clock.phase("fluid"):
                 step = self._fluid.begin_steady(fluid, moved.mesh.points)
                 if last is not None:
@@ -137,13 +187,17 @@ class CoupledMarch:
             return step, moved
 
         self._test.begin_step(0.0, 0.0)
-        fields, record = self._iterate(state.interface[0], flow, solid_step, "steady coupling")
-        d = fields.displacement[self._interface.solid]
-        return State(fields.fluid.accept(), solid_step.accept(fields.displacement), fields.mesh, (d,)), record
+        return self._iterate(displacement[self._interface.solid], flow, solid_step, "steady coupling", share)
 
-    def _iterate(self, d: Array, flow: Callable[[Array], tuple[FluidStep, MeshState]], solid_step: SolidStep,
-                 where: str) -> tuple[_Fields, CouplingRecord]:
-        """Fixed-point iteration d ↦ d̃ with acceleration."""
+    def _iterate(
+        self,
+        d: Array,
+        flow: Callable[[Array], tuple[FluidStep, MeshState]],
+        solid_step: SolidStep,
+        where: str,
+        share: float = 1.0,
+    ) -> tuple[_Fields, CouplingRecord]:
+        """Fixed-point iteration d ↦ d̃ with acceleration, under a share of the fluid's load."""
         settings, interface = self._settings, self._interface
         self._accelerator.begin_step()
         displacement: Array | None = None
@@ -153,7 +207,7 @@ class CoupledMarch:
             with self._clock.phase("fluid"):
                 force = _load(step.reaction(), interface)
             with self._clock.phase("solid"):
-                displacement = solid_step.solve(self._nodal(force), displacement)
+                displacement = solid_step.solve(share * self._nodal(force), displacement)
             image = displacement[interface.solid]
             residual = image - d
             if not (np.isfinite(residual).all() and np.isfinite(force).all()):
@@ -162,13 +216,16 @@ class CoupledMarch:
             if residuals.largest <= settings.tolerance:
                 self._accelerator.end_step()
                 record = CouplingRecord(iteration, residuals.displacement, residuals.force)
-                return _Fields(step, moved, displacement), record
+                return _Fields(step, moved, solid_step, displacement), record
             with self._clock.phase("coupling"):
                 d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
         raise CouplingError(
-            f"not converged after {settings.max_iterations} iterations: displacement residual {residuals.displacement:.2g}, "
-            f"force residual {residuals.force:.2g}, expected below {settings.tolerance:g}. Lower time.dt, raise "
-            "coupling.max_iterations, or use coupling.acceleration = \"iqn-ils\".", "max_iterations", where)
+            f"not converged after {settings.max_iterations} iterations: displacement residual "
+            f"{residuals.displacement:.2g}, force residual {residuals.force:.2g}, expected below "
+            f'{settings.tolerance:g}. Lower time.dt, raise coupling.max_iterations, or use coupling.acceleration = "iqn-ils".',
+            "max_iterations",
+            where,
+        )
 
     def _nodal(self, force: Array) -> Array:
         nodal = np.zeros(self._solid.mesh.points.shape)
@@ -182,5 +239,7 @@ def _load(reaction: Array, interface: Interface) -> Array:
 
 
 def _parts(state: State) -> tuple[FluidState, SolidState, MeshState]:
-    assert state.fluid is not None and state.solid is not None and state.mesh is not None
+    assert state.fluid is not None
+    assert state.solid is not None
+    assert state.mesh is not None
     return state.fluid, state.solid, state.mesh

@@ -13,8 +13,8 @@ __all__ = ["InverseLeastSquares"]
 class InverseLeastSquares:
     """IQN-ILS with reuse of earlier steps and the QR2 filter.
 
-    Differences of successive residuals and of successive images d̃ within a step are columns of V and W. The next iterate is
-    d̃ + W c with c = argmin ‖V c + r‖.
+    Differences of successive residuals and of successive images d̃ within a step are columns of V and W. The next
+    iterate is d̃ + W c with c = argmin ‖V c + r‖.
 
     Parameters
     ----------
@@ -28,7 +28,8 @@ class InverseLeastSquares:
     References
     ----------
     Degroote, Bathe, Vierendeels, Comput. Struct. 87 (2009) 793–801, doi:10.1016/j.compstruc.2008.11.013;
-    Haelterman, Bogaers, Scheufele, Uekermann, Mehl, Comput. Struct. 171 (2016) 9–17 (QR2), doi:10.1016/j.compstruc.2016.04.001.
+    Haelterman, Bogaers, Scheufele, Uekermann, Mehl, Comput. Struct. 171 (2016) 9–17 (QR2),
+    doi:10.1016/j.compstruc.2016.04.001.
     """
 
     def __init__(self, reuse: int, filter: float, relaxation: float) -> None:
@@ -69,7 +70,7 @@ class InverseLeastSquares:
 
     def _filtered(self, V: Array) -> NDArray[np.bool_]:
         """Columns that are independent enough of newer ones; at most as many as there are rows."""
-        keep = np.arange(V.shape[1]) < V.shape[0]
+        keep: NDArray[np.bool_] = np.arange(V.shape[1]) < V.shape[0]
         norms = np.linalg.norm(V, axis=0)
         while True:
             kept = np.flatnonzero(keep)

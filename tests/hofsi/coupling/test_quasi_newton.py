@@ -1,0 +1,73 @@
+"""IQN-ILS with reuse and the QR2 filter."""
+
+import numpy as np
+
+from hofsi.coupling.quasi_newton import InverseLeastSquares
+
+
+def problem(size, seed):
+    rng = np.random.default_rng(seed)
+    A = rng.normal(size=(size, size))
+    A *= 3.0 / np.abs(np.linalg.eigvals(A)).max()  # plain iteration diverges
+    b = rng.normal(size=size)
+    return A, b, np.linalg.solve(np.eye(size) - A, b)
+
+
+def iterations(accelerator, A, b, exact, limit=50):
+    accelerator.begin_step()
+    d = np.zeros(len(b))
+    for count in range(limit):
+        if np.linalg.norm(d - exact) <= 1e-9 * np.linalg.norm(exact):
+            accelerator.end_step()
+            return count
+        d = accelerator.next(d, A @ d + b - d)
+    raise AssertionError("not converged")
+
+
+def test_a_linear_problem_takes_one_iteration_more_than_its_size():
+    A, b, exact = problem(6, 11)
+    assert iterations(InverseLeastSquares(0, 0.0, 0.5), A, b, exact) <= 8
+
+
+def test_secants_of_earlier_steps_are_worth_iterations():
+    A, b, exact = problem(12, 12)
+    reusing = InverseLeastSquares(5, 1e-8, 0.5)
+    first = iterations(reusing, A, b, exact)
+    second = iterations(reusing, A, 2.0 * b, 2.0 * exact)
+    assert second <= 3 < first
+
+
+def test_steps_older_than_the_reuse_are_forgotten():
+    accelerator = InverseLeastSquares(2, 0.0, 0.5)
+    A, b, exact = problem(4, 13)
+    for k in range(4):
+        iterations(accelerator, A, (k + 1) * b, (k + 1) * exact)
+    assert len(accelerator._steps) == 2
+
+
+def test_dependent_columns_are_dropped_for_good():
+    accelerator = InverseLeastSquares(0, 1e-3, 0.5)
+    accelerator.begin_step()
+    r = np.array([1.0, 0.0, 0.0])
+    d = np.zeros(3)
+    for shift in ([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 1e-9, 0.0], [3.0, 1.0, 0.0]):
+        accelerator.next(d + np.array(shift), r + np.array(shift))
+    assert accelerator.dropped >= 1
+    assert accelerator.columns == 2
+
+
+def test_more_columns_than_unknowns_are_no_harm():
+    A, b, exact = problem(3, 14)
+    accelerator = InverseLeastSquares(10, 1e-6, 0.5)
+    for k in range(1, 6):
+        assert iterations(accelerator, A, k * b, k * exact) <= 6
+        assert accelerator.columns <= 3 + 4
+
+
+def test_a_repeated_residual_makes_no_column():
+    accelerator = InverseLeastSquares(0, 1e-3, 0.5)
+    accelerator.begin_step()
+    d, r = np.zeros(2), np.array([1.0, 1.0])
+    first = accelerator.next(d, r)
+    np.testing.assert_array_equal(accelerator.next(d, r), first)
+    assert accelerator.columns == 0
