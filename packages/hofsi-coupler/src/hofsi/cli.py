@@ -1,0 +1,148 @@
+"""The command line: ``hofsi run`` and ``hofsi check``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from hoblock.errors import HoblockError, SceneError
+from hofsi.errors import HofsiError
+from hofsi.io.scene import load_case
+from hofsi.io.summary import read_summary
+from hofsi.version import __version__
+
+__all__ = ["main"]
+
+_BAD_INPUT, _NOT_CONVERGED, _INTERRUPTED = 2, 3, 130
+_COLUMNS = ("quantity", "last", "mean ± amplitude", "frequency")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Without the program's name; by default those of the process.
+
+    Returns
+    -------
+    int
+        0, or 2 for bad input, 3 for a run that did not converge, 130 for one that was interrupted.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        return _check(options) if options.command == "check" else _run(options)
+    except (HoblockError, HofsiError) as error:
+        _complain(_named(error, options.scene))
+        return error.exit_code if isinstance(error, HofsiError) else _BAD_INPUT
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        _complain(f"{where}{error.strerror or error}. Check the output directory and its permissions.")
+        return _BAD_INPUT
+    except KeyboardInterrupt:
+        _complain(f"interrupted.{_kept(options, 'interrupted')}")
+        return _INTERRUPTED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="hofsi", description="Fluid-structure interaction on moving meshes.")
+    parser.add_argument("--version", action="version", version=f"hofsi {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="run | check")
+    run = commands.add_parser("run", help="simulate a scene", description="Simulate a scene and write the results.")
+    check = commands.add_parser(
+        "check",
+        help="validate a scene and say what would be done",
+        description="Validate a scene completely, run nothing, and say what would be done.",
+    )
+    for command in (run, check):
+        command.add_argument("scene", metavar="SCENE", help="the scene, a TOML file")
+        command.add_argument(
+            "--set",
+            metavar="KEY=VALUE",
+            action="append",
+            default=[],
+            dest="changes",
+            help="change a key of the scene, for example mesh.order=6; may be repeated",
+        )
+    run.add_argument("-o", "--output", metavar="DIR", required=True, help="directory for the results")
+    run.add_argument("--quiet", action="store_true", help="show nothing but errors")
+    return parser
+
+
+def _check(options: argparse.Namespace) -> int:
+    """Everything that a run does before its first step."""
+    from hofsi.build import build
+    from hofsi.plan import plan
+    from hofsi.quantities import evaluators
+
+    case = load_case(options.scene, options.changes)
+    lines = plan(case).lines()
+    evaluators(build(case))
+    print(case.title or Path(case.file).name)
+    print("\n".join(lines))
+    return 0
+
+
+def _run(options: argparse.Namespace) -> int:
+    from hofsi.run import run
+
+    case = load_case(options.scene, options.changes)
+    result = run(case, options.output, progress=None if options.quiet else sys.stderr, changes=options.changes)
+    if result.status != "completed":
+        _complain(f"{options.scene}: {result.reason}{_kept(options, result.status)}")
+    if not options.quiet:
+        print("\n".join(_report(result.summary, result.directory)))
+    return 0 if result.status == "completed" else _NOT_CONVERGED
+
+
+def _named(error: Exception, scene: str) -> str:
+    """The message, with the scene's name where the error does not know it."""
+    return str(error) if isinstance(error, SceneError) and error.file else f"{scene}: {error}"
+
+
+def _complain(message: str) -> None:
+    print(f"hofsi: {message}", file=sys.stderr)
+
+
+def _kept(options: argparse.Namespace, status: str) -> str:
+    """Where the results are of a run that ended with some status, if it came that far."""
+    if options.command != "run":
+        return ""
+    try:
+        found = read_summary(Path(options.output) / "summary.json")["status"]
+    except (OSError, ValueError, KeyError):
+        return ""
+    return f" What was computed until then is in {options.output}." if found == status else ""
+
+
+def _report(summary: Mapping[str, Any], directory: Path) -> list[str]:
+    """What is printed in the end."""
+    counts, seconds = summary["counts"], dict(summary["seconds"])
+    steps = f"{counts['steps']} step" + ("" if counts["steps"] == 1 else "s")
+    total = seconds.pop("total")
+    parts = sorted(seconds.items(), key=lambda item: -item[1])
+    lines = [f"{summary['status']}: {steps} in {total:.2f} s", *_table(summary["quantities"])]
+    lines.append("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in parts if value >= 0.005))
+    files = sorted(path.name + ("/" if path.is_dir() else "") for path in directory.iterdir())
+    lines.append(f"{directory}: " + ", ".join(name for name in files if not name.startswith(".")))
+    return lines
+
+
+def _table(quantities: Mapping[str, Mapping[str, float | None]]) -> list[str]:
+    if not quantities:
+        return []
+    rows = [_COLUMNS]
+    for name, values in quantities.items():
+        mean, amplitude = values["mean"], values["amplitude"]
+        oscillation = "–" if mean is None or amplitude is None else f"{mean:.6g} ± {amplitude:.6g}"
+        rows.append((name, _number(values["last"]), oscillation, _number(values["frequency"])))
+    widths = [max(len(row[k]) for row in rows) for k in range(len(_COLUMNS))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.7g}"

@@ -1,0 +1,1 @@
+"""Observers: they read the records of a run and never steer it."""

@@ -1,0 +1,117 @@
+"""Fields of fluid and solid as series of files for ParaView."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hoblock import QuadMesh
+from hofsi.build import Problem
+from hofsi.fem.resampling import pressure_at_nodes
+from hofsi.io.pvd import write_pvd
+from hofsi.io.vtu import require_vtk, write_vtu
+from hofsi.records import StepRecord
+
+if TYPE_CHECKING:
+    from hofsi.solvers.solid import SolidState
+    from hofsi.solvers.solid_stress import SolidStress
+
+Array = NDArray[np.float64]
+
+__all__ = ["FieldWriter"]
+
+
+class FieldWriter:
+    """Writes every N-th step and the last one: ``fluid.pvd`` and ``solid.pvd``, with their files in ``fields``.
+
+    The fluid has ``velocity`` and ``pressure``, and ``mesh_displacement`` if its mesh moves; the solid has
+    ``displacement``, ``velocity`` unless the case is steady, ``cauchy_stress`` (xx, yy, zz, xy, yz, xz) and
+    ``von_mises``. Both are written where they are, deformed. The series is complete after every step, whatever happens
+    to the run later.
+
+    Parameters
+    ----------
+    problem : Problem
+    directory : path-like
+        Made if it does not exist.
+    every : int
+        Steps between files.
+
+    Raises
+    ------
+    MissingExtraError
+        If vtk is not installed.
+    ValueError
+        If ``every`` is not positive.
+    """
+
+    def __init__(self, problem: Problem, directory: str | os.PathLike[str], every: int) -> None:
+        if every < 1:
+            raise ValueError(f"every: got {every}; expected a number of steps, at least 1.")
+        require_vtk()
+        self._problem, self._directory, self._every = problem, Path(directory), every
+        (self._directory / "fields").mkdir(parents=True, exist_ok=True)
+        self._stress = _stress(problem)
+        self._entries: dict[str, list[tuple[float, str]]] = {}
+        self._waiting: StepRecord | None = None
+
+    def observe(self, record: StepRecord) -> None:
+        """Write a finished step if its turn has come; otherwise remember it, it may be the last one."""
+        if record.step % self._every:
+            self._waiting = record
+        else:
+            self._write(record)
+            self._waiting = None
+
+    def close(self) -> None:
+        """Write the last step observed, unless it is written already; also after a run that was broken off."""
+        if self._waiting is not None:
+            self._write(self._waiting)
+            self._waiting = None
+
+    def _write(self, record: StepRecord) -> None:
+        fluid, solid, state = self._problem.fluid, self._problem.solid, record.state
+        if fluid is not None and state.fluid is not None and state.mesh is not None:
+            fields = {
+                "velocity": state.fluid.velocity,
+                "pressure": pressure_at_nodes(fluid.solver.space, state.fluid.pressure),
+            }
+            points = state.mesh.mesh.points
+            if self._problem.case.motions or solid is not None:
+                fields["mesh_displacement"] = points - fluid.mesh.points
+            self._add("fluid", record, fluid.mesh, points, fields)
+        if solid is not None and state.solid is not None:
+            points = solid.mesh.points + state.solid.displacement
+            self._add("solid", record, solid.mesh, points, self._solid_fields(state.solid, record.dt == 0.0))
+
+    def _solid_fields(self, state: SolidState, steady: bool) -> dict[str, Array]:
+        fields = {"displacement": state.displacement}
+        if not steady:
+            fields["velocity"] = state.velocity
+        if self._stress is not None:
+            from hofsi.solvers.solid_stress import von_mises
+
+            sigma = self._stress.cauchy(state.displacement)
+            fields["cauchy_stress"] = np.pad(sigma, ((0, 0), (0, 2)))  # six components are a symmetric tensor for VTK
+            fields["von_mises"] = von_mises(sigma)
+        return fields
+
+    def _add(self, name: str, record: StepRecord, mesh: QuadMesh, points: Array, fields: Mapping[str, Array]) -> None:
+        file = f"fields/{name}_{record.step:06d}.vtu"
+        write_vtu(self._directory / file, mesh, points, fields)
+        entries = self._entries.setdefault(name, [])
+        entries.append((record.time, file))
+        write_pvd(self._directory / f"{name}.pvd", entries)
+
+
+def _stress(problem: Problem) -> SolidStress | None:
+    if problem.solid is None:
+        return None
+    from hofsi.solvers.solid_stress import SolidStress
+
+    return SolidStress(problem.solid.mesh, problem.case.solids)

@@ -1,0 +1,154 @@
+"""Tables that grow by a line in every step: ``quantities.csv`` and ``steps.csv``."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Callable, Mapping, Sequence
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi.counts import Counts
+from hofsi.records import StepRecord
+
+Array = NDArray[np.float64]
+
+__all__ = ["QuantityTable", "STEP_COLUMNS", "StepTable"]
+
+STEP_COLUMNS = (
+    "step",
+    "t",
+    "dt",
+    "coupling_iterations",
+    "displacement_residual",
+    "force_residual",
+    "min_det_J",
+    "blocks_regenerated",
+    "factorisations",
+    "assemblies",
+    "seconds",
+)
+"""Columns of ``steps.csv``; those that a problem does not have stay empty."""
+
+
+class _Lines:
+    """A CSV file whose lines are on disk as soon as they are written."""
+
+    def __init__(self, path: str | os.PathLike[str], columns: Sequence[str]) -> None:
+        self._file = open(path, "w", encoding="utf-8", newline="")  # noqa: SIM115 (open as long as the run)
+        self._writer = csv.writer(self._file, lineterminator="\n")
+        self.write(columns)
+
+    def write(self, cells: Sequence[object]) -> None:
+        """Write a line; None is an empty cell, and numbers keep all their digits."""
+        self._writer.writerow(cells)
+        self._file.flush()
+
+    def close(self) -> None:
+        self._file.close()
+
+
+def _rounded(time: float) -> float:
+    """A time without the rounding error of its last digits: 0.3 and not 0.30000000000000004."""
+    return float(f"{time:.12g}")
+
+
+class QuantityTable:
+    """Evaluates the quantities of every step, writes them down and keeps them.
+
+    Parameters
+    ----------
+    path : path-like
+        Of a CSV file with the columns step, t and the names; it is flushed in every step.
+    evaluators : mapping of str to callable
+        See `hofsi.quantities.evaluators`.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], evaluators: Mapping[str, Callable[[StepRecord], float]]) -> None:
+        self._evaluators = dict(evaluators)
+        self._times: list[float] = []
+        self._values: dict[str, list[float]] = {name: [] for name in evaluators}
+        self._lines = _Lines(path, ("step", "t", *evaluators))
+
+    @property
+    def times(self) -> Array:
+        """Times of the steps so far, shape (n,)."""
+        return np.array(self._times)
+
+    @property
+    def series(self) -> dict[str, Array]:
+        """Values of each quantity so far, shape (n,) each."""
+        return {name: np.array(values) for name, values in self._values.items()}
+
+    def observe(self, record: StepRecord) -> None:
+        """Write the line of a step."""
+        row = {name: float(evaluate(record)) for name, evaluate in self._evaluators.items()}
+        self._times.append(record.time)
+        for name, value in row.items():
+            self._values[name].append(value)
+        self._lines.write((record.step, _rounded(record.time), *row.values()))
+
+    def close(self) -> None:
+        """Close the file."""
+        self._lines.close()
+
+
+class StepTable:
+    """Writes down how each step went, and adds up what the summary tells.
+
+    Parameters
+    ----------
+    path : path-like
+    counts : mapping of str to Counts
+        Of each field, live: factorisations and assemblies are written as they stand after the step.
+    clock : callable
+        Seconds; those since the table was opened are written.
+
+    Attributes
+    ----------
+    steps, coupling_iterations : int
+        So far.
+    blocks_regenerated : int
+        Blocks whose mesh was generated anew, summed over the meshes of the finished steps.
+    """
+
+    def __init__(
+        self, path: str | os.PathLike[str], counts: Mapping[str, Counts], clock: Callable[[], float] = perf_counter
+    ) -> None:
+        self._counts, self._clock = counts, clock
+        self._opened = clock()
+        self._mesh: object = None
+        self._lines = _Lines(path, STEP_COLUMNS)
+        self.steps = self.coupling_iterations = self.blocks_regenerated = 0
+
+    def observe(self, record: StepRecord) -> None:
+        """Write the line of a step."""
+        coupling, mesh = record.coupling, record.state.mesh
+        blocks = None if mesh is None else mesh.regenerated if mesh is not self._mesh else 0
+        self._mesh = mesh
+        self.steps += 1
+        self.coupling_iterations += 0 if coupling is None else coupling.iterations
+        self.blocks_regenerated += blocks or 0
+        self._lines.write(
+            (
+                record.step,
+                _rounded(record.time),
+                _rounded(record.dt),
+                *(
+                    (None, None, None)
+                    if coupling is None
+                    else (coupling.iterations, coupling.displacement, coupling.force)
+                ),
+                record.min_det_J,
+                blocks,
+                sum(count.factorisations for count in self._counts.values()),
+                sum(count.assemblies for count in self._counts.values()),
+                round(self._clock() - self._opened, 4),
+            )
+        )
+
+    def close(self) -> None:
+        """Close the file."""
+        self._lines.close()

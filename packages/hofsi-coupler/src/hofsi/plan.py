@@ -1,0 +1,346 @@
+"""What a case needs and what it does not: counts and choices, found without running anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hoblock.blocks import BlockStructure
+from hoblock.build import build_structure
+from hoblock.errors import HoblockError
+from hoblock.generate import generate
+from hoblock.mesh import QuadMesh
+from hoblock.numbering import number_nodes
+from hoblock.quality import scaled_jacobian
+from hofsi.case import Case, Fluid, PseudoSolidSettings, Solid, Steady, Unsteady
+from hofsi.case_checks import check_case
+from hofsi.errors import CaseError
+
+__all__ = ["Item", "Plan", "plan"]
+
+_LAWS = {"linear": "linear elasticity", "st-venant-kirchhoff": "St. Venant–Kirchhoff"}
+_MODELS = {"navier-stokes": "Navier–Stokes", "stokes": "Stokes"}
+_ACCELERATIONS = {"iqn-ils": "IQN-ILS", "aitken": "Aitken's relaxation", "constant": "constant relaxation"}
+
+
+@dataclass(frozen=True)
+class Item:
+    """One line of a plan.
+
+    Attributes
+    ----------
+    name : str
+    detail : str
+        How much of it there will be; of something that is skipped, the reason.
+    """
+
+    name: str
+    detail: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run of a case builds and does, and what it leaves out.
+
+    Attributes
+    ----------
+    built, skipped : tuple of Item
+    """
+
+    built: tuple[Item, ...]
+    skipped: tuple[Item, ...]
+
+    def lines(self) -> tuple[str, ...]:
+        """The plan as text, names in one column."""
+        width = max((len(item.name) for item in (*self.built, *self.skipped)), default=0)
+        parts = (("built", self.built), ("skipped", self.skipped))
+        return tuple(
+            line
+            for title, items in parts
+            if items
+            for line in (f"{title}:", *(f"  {item.name:<{width}}  {item.detail}" for item in items))
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Meshes:
+    """The parts of the mesh, as a run makes them."""
+
+    fluid: tuple[BlockStructure, QuadMesh] | None
+    solid: tuple[BlockStructure, QuadMesh] | None
+    wet: tuple[int, int]
+    driven: int
+
+
+def plan(case: Case) -> Plan:
+    """Check a case completely, its mesh included, and say what a run of it needs.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    HoblockError
+        If there is no such block structure.
+    CaseError
+        If an element would be invalid, or the case cannot be simulated.
+    """
+    check_case(case)
+    meshes = _meshes(case)
+    built = [*_fluid(case, meshes), *_solid(case, meshes), *_coupling(case, meshes), *_time(case), *_output(case)]
+    skipped = [
+        *_without_bodies(case),
+        *_without_motion(case),
+        *_without_iteration(case),
+        *_without_output(case),
+        *_unused_tables(case),
+    ]
+    return Plan(tuple(built), tuple(skipped))
+
+
+def _coupled(case: Case) -> bool:
+    return case.fluid is not None and bool(case.solids)
+
+
+def _moves(case: Case) -> bool:
+    """Whether the fluid's mesh moves."""
+    return case.fluid is not None and bool(case.solids or case.motions)
+
+
+def _iterates(case: Case, fluid: Fluid) -> bool:
+    """Whether the fluid's equations are nonlinear."""
+    if fluid.model == "stokes":
+        return False
+    return isinstance(case.time, Steady) or not fluid.extrapolates(case.coupling if case.solids else None)
+
+
+def _meshes(case: Case) -> _Meshes:
+    structure = build_structure(case.mesh)
+    groups = [name for solid in case.solids for name in solid.blocks]
+    solid = _part(structure, groups, case.mesh.order) if groups else None
+    if case.fluid is None:
+        return _Meshes(None, solid, (0, 0), 0)
+    fluid = _part(structure, case.fluid.blocks, case.mesh.order)
+    wet = structure.shared_edges(case.fluid.blocks, groups) if groups else np.zeros(0, dtype=np.int64)
+    named = structure.topology.edge_groups
+    driven = np.unique(np.concatenate([wet, *(named[name] for motion in case.motions for name in motion.on)]))
+    ends = structure.topology.edges
+    nodes = len(np.unique(ends[wet])) + int((structure.topology.counts[wet] * case.mesh.order - 1).sum())
+    return _Meshes(fluid, solid, (len(wet), nodes), len(np.unique(ends[driven])))
+
+
+def _part(structure: BlockStructure, groups: Sequence[str], order: int) -> tuple[BlockStructure, QuadMesh]:
+    part = structure.restricted(groups)
+    try:
+        return part, generate(part, order)
+    except HoblockError as error:
+        raise CaseError(str(error), "mesh") from error
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _mesh(structure: BlockStructure, mesh: QuadMesh) -> str:
+    worst = float(scaled_jacobian(mesh).min())
+    return (
+        f"{_number(len(structure.topology.quads), 'block')}, {_number(len(mesh.cells), 'element')} of order "
+        f"{mesh.order}, {len(mesh.points)} nodes, worst scaled Jacobian {worst:.2f}"
+    )
+
+
+def _inner(mesh: QuadMesh, order: int) -> int:
+    """Nodes of an order inside elements, which static condensation eliminates."""
+    return len(mesh.cells) * (order - 1) ** 2
+
+
+def _fluid(case: Case, meshes: _Meshes) -> Iterator[Item]:
+    if case.fluid is None or meshes.fluid is None:
+        return
+    structure, mesh = meshes.fluid
+    p, velocities = mesh.order, 2 * len(mesh.points)
+    pressures = number_nodes(mesh.corners, p - 1)[1]
+    kept = velocities + pressures - 2 * _inner(mesh, p) - _inner(mesh, p - 1)
+    yield Item("fluid mesh", _mesh(structure, mesh))
+    yield Item(
+        "fluid",
+        f"{_MODELS[case.fluid.model]}, ρ = {case.fluid.density:g}, μ = {case.fluid.viscosity:g}; "
+        f"{velocities} unknowns of velocity and {pressures} of pressure, given ones included",
+    )
+    if _iterates(case, case.fluid):
+        method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
+        yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}")
+    elif case.fluid.model == "navier-stokes":
+        yield Item("convection", "convecting velocity extrapolated to second order: linear steps")
+    solver = {
+        "direct": f"sparse LU of {kept} unknowns after static condensation",
+        "amg": f"FGMRES with algebraic multigrid to a relative residual of {case.linear.tolerance:g}",
+    }
+    yield Item("fluid's linear solver", solver[case.linear.solver])
+
+
+def _solid(case: Case, meshes: _Meshes) -> Iterator[Item]:
+    if meshes.solid is None:
+        return
+    structure, mesh = meshes.solid
+    unknowns = 2 * len(mesh.points)
+    yield Item("solid mesh", _mesh(structure, mesh))
+    yield Item(
+        "solid",
+        f"{unknowns} unknowns of displacement, given ones included; "
+        f"{unknowns - 2 * _inner(mesh, mesh.order)} after static condensation, sparse LU",
+    )
+    for solid in case.solids:
+        yield Item(f"solid {solid.name!r}", _material(solid, case.fluid))
+
+
+def _material(solid: Solid, fluid: Fluid | None) -> str:
+    ratio = f"; density ratio solid/fluid {solid.density / fluid.density:.4g}" if fluid else ""
+    return (
+        f"{_LAWS[solid.model]}, plane {solid.plane}, E = {solid.youngs_modulus:g}, ν = {solid.poissons_ratio:g}, "
+        f"ρ = {solid.density:g}{ratio}"
+    )
+
+
+def _coupling(case: Case, meshes: _Meshes) -> Iterator[Item]:
+    if _moves(case) and meshes.fluid is not None:
+        structure = meshes.fluid[0]
+        moved = np.setdiff1d(np.arange(len(structure.vertices)), structure.topology.boundary_vertices)
+        kind = "pseudo-solid" if isinstance(case.mover, PseudoSolidSettings) else "angle optimisation"
+        vertices = "1 free block vertex follows" if len(moved) == 1 else f"{len(moved)} free block vertices follow"
+        yield Item("mover", f"{kind}: {vertices} {meshes.driven} driven ones")
+    if not _coupled(case):
+        return
+    settings = case.coupling
+    edges, nodes = meshes.wet
+    yield Item("interface", f"{_number(edges, 'block edge')}, {nodes} nodes of fluid and solid matched one to one")
+    yield Item(
+        "coupling",
+        f"{_ACCELERATIONS[settings.acceleration]} to {settings.tolerance:g} in displacement and "
+        f"force, at most {settings.max_iterations} iterations",
+    )
+    if isinstance(case.time, Steady) or settings.geometry == "implicit":
+        yield Item("geometry", "implicit: a new fluid mesh in every coupling iteration")
+    else:
+        yield Item("geometry", "extrapolated: one fluid mesh a step")
+
+
+def _time(case: Case) -> Iterator[Item]:
+    if isinstance(case.time, Unsteady):
+        time = case.time
+        order = "first order" if time.steps == 1 else "second order (the first step: of first)"
+        yield Item(
+            "time",
+            f"{_number(time.steps, 'step')} of {time.dt:g} from {time.start:g} to {time.end:g}, "
+            f"backward differences of {order}",
+        )
+    else:
+        yield Item("time", "steady")
+
+
+def _output(case: Case) -> Iterator[Item]:
+    output = case.output
+    if case.quantities:
+        yield Item("quantities", ", ".join(quantity.name for quantity in case.quantities))
+    if output.period_of is not None and isinstance(case.time, Unsteady):
+        yield Item("period", f"of {output.period_of}")
+    if output.fields:
+        files = " and ".join(name for name, body in (("fluid.pvd", case.fluid), ("solid.pvd", case.solids)) if body)
+        if isinstance(case.time, Steady):
+            yield Item("fields", f"{files} of the steady state")
+        else:
+            times = _number(-(-case.time.steps // output.every), "time")
+            yield Item("fields", f"{files} every {_number(output.every, 'step')} and at the end: {times}")
+    if output.plots:
+        yield Item("plots", "PNG of mesh" + (", fields and quantities" if _has_series(case) else " and fields"))
+
+
+def _has_series(case: Case) -> bool:
+    return bool(case.quantities) and isinstance(case.time, Unsteady)
+
+
+def _without_bodies(case: Case) -> Iterator[Item]:
+    if case.fluid is None:
+        yield Item("fluid", "no [fluid]")
+    if not case.solids:
+        yield Item("solid", "no [[solid]]")
+    if not _coupled(case):
+        yield Item("coupling", "no solid" if case.fluid else "no fluid")
+
+
+def _without_motion(case: Case) -> Iterator[Item]:
+    if case.fluid is None or _moves(case):
+        return
+    yield Item(
+        "mesh motion",
+        "no boundary of the fluid moves: geometry factors are computed once, matrices without "
+        f"convection {_once(case)}",
+    )
+
+
+def _once(case: Case) -> str:
+    """How often something is done that depends on nothing but the coefficients of the time scheme."""
+    several = isinstance(case.time, Unsteady) and case.time.steps > 1
+    return "twice, for the first step and the others" if several else "once"
+
+
+def _without_iteration(case: Case) -> Iterator[Item]:
+    fluid = case.fluid
+    if fluid is not None:
+        if fluid.model == "stokes":
+            kept = "" if _moves(case) else f", and its {_factor(case)} is kept"
+            yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
+        elif not _iterates(case, fluid):
+            meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
+            yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}")
+        if case.linear.solver == "direct":
+            yield Item("algebraic multigrid", 'linear.solver = "direct"')
+    if case.solids and all(solid.model == "linear" for solid in case.solids):
+        yield Item("solid's Newton iteration", f"linear: factorised {_once(case)}")
+    if isinstance(case.time, Steady):
+        yield Item("time loop", "steady: no inertia, no time steps")
+
+
+def _factor(case: Case) -> str:
+    return "factorisation" if case.linear.solver == "direct" else "preconditioner"
+
+
+def _one_mesh_a_step(case: Case) -> bool:
+    return _coupled(case) and case.coupling.geometry == "extrapolated"
+
+
+def _without_output(case: Case) -> Iterator[Item]:
+    if not case.quantities:
+        yield Item("quantities", "no [quantities]")
+    if case.output.period_of is None:
+        if _has_series(case):
+            yield Item("period", "no output.period_of")
+    elif isinstance(case.time, Steady):
+        yield Item("period", "steady: output.period_of is not used")
+    if not case.output.fields:
+        yield Item("fields", "output.fields = false: no writer, vtk is not needed")
+    if not case.output.plots:
+        yield Item("plots", "output.plots = false: matplotlib is not needed")
+
+
+def _unused_tables(case: Case) -> Iterator[Item]:
+    """Tables that the scene has and the run does not read."""
+    needless: dict[str, str] = {}
+    if not _coupled(case):
+        needless["coupling"] = "there is no " + ("solid" if case.fluid else "fluid")
+    if not _moves(case):
+        needless["mover"] = "no boundary of the fluid moves"
+    if case.fluid is None:
+        needless["linear"] = "a solid is always solved by sparse LU"
+    elif not case.solids and not _iterates(case, case.fluid):
+        needless["nonlinear"] = "the equations are linear"
+    for name, reason in needless.items():
+        if name in case.tables:
+            yield Item(f"[{name}]", f"not used: {reason}")

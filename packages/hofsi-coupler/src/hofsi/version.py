@@ -1,0 +1,5 @@
+"""The version of hofsi."""
+
+__all__ = ["__version__"]
+
+__version__ = "0.1.0"

@@ -1,0 +1,103 @@
+"""Tables of quantities and steps."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hofsi.counts import Counts
+from hofsi.observers.table import STEP_COLUMNS, QuantityTable, StepTable
+from hofsi.records import CouplingRecord, State, StepRecord
+
+
+def record(step: int, **others: Any) -> StepRecord:
+    return StepRecord(step, 0.1 * step, 0.1, others.pop("state", State()), **others)
+
+
+def lines(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_quantities_are_on_disk_after_every_step(tmp_path: Path) -> None:
+    path = tmp_path / "quantities.csv"
+    table = QuantityTable(path, {"square": lambda r: r.step**2 / 3.0, "gone": lambda r: float("nan")})
+    assert path.read_text(encoding="utf-8") == "step,t,square,gone\n"
+    for step in (1, 2, 3):
+        table.observe(record(step))
+        written = lines(path)
+        assert len(written) == step
+        assert float(written[-1]["square"]) == step**2 / 3.0  # all digits
+        assert (written[-1]["step"], float(written[-1]["t"]), written[-1]["gone"]) == (str(step), step / 10, "nan")
+    table.close()
+    np.testing.assert_array_equal(table.times, [0.1, 0.2, 0.1 * 3])
+    np.testing.assert_array_equal(table.series["square"], np.array([1.0, 4.0, 9.0]) / 3.0)
+
+
+def test_a_quantity_that_fails_leaves_no_half_line(tmp_path: Path) -> None:
+    def fail(_: StepRecord) -> float:
+        raise ValueError("no such thing")
+
+    table = QuantityTable(tmp_path / "quantities.csv", {"good": lambda r: 1.0, "bad": fail})
+    with pytest.raises(ValueError, match="no such thing"):
+        table.observe(record(1))
+    table.close()
+    assert (table.times.size, lines(tmp_path / "quantities.csv")) == (0, [])
+
+
+def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
+    counts = {"fluid": Counts(), "solid": Counts()}
+    seconds = iter([10.0, 10.5, 12.25])
+    table = StepTable(tmp_path / "steps.csv", counts, lambda: next(seconds))
+    for step in (1, 2):
+        counts["fluid"].factorisations += 2
+        counts["solid"].factorisations += 1
+        counts["solid"].assemblies += 1
+        mesh: Any = SimpleNamespace(regenerated=7)
+        table.observe(record(step, state=State(mesh=mesh), coupling=CouplingRecord(4, 1e-7, 2e-8), min_det_J=0.25))
+    table.close()
+    assert (table.steps, table.coupling_iterations, table.blocks_regenerated) == (2, 8, 14)
+    written = lines(tmp_path / "steps.csv")
+    assert tuple(written[0]) == STEP_COLUMNS
+    assert written[1] == {
+        "step": "2",
+        "t": "0.2",
+        "dt": "0.1",
+        "coupling_iterations": "4",
+        "displacement_residual": "1e-07",
+        "force_residual": "2e-08",
+        "min_det_J": "0.25",
+        "blocks_regenerated": "7",
+        "factorisations": "6",
+        "assemblies": "2",
+        "seconds": "2.25",
+    }
+
+
+def test_what_a_problem_does_not_have_stays_empty(tmp_path: Path) -> None:
+    table = StepTable(tmp_path / "steps.csv", {"solid": Counts(factorisations=1)})
+    table.observe(record(1))
+    table.close()
+    (written,) = lines(tmp_path / "steps.csv")
+    empty = [name for name, cell in written.items() if not cell]
+    assert empty == list(STEP_COLUMNS[3:8])
+    assert (table.coupling_iterations, table.blocks_regenerated) == (0, 0)
+
+
+def test_blocks_of_a_mesh_that_stays_are_counted_once(tmp_path: Path) -> None:
+    table = StepTable(tmp_path / "steps.csv", {})
+    mesh: Any = SimpleNamespace(regenerated=3)
+    for step in (1, 2, 3):
+        table.observe(record(step, state=State(mesh=mesh)))
+    table.close()
+    assert table.blocks_regenerated == 3
+
+
+def test_a_folder_that_does_not_exist_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        StepTable(tmp_path / "nowhere" / "steps.csv", {})
