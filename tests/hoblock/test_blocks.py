@@ -3,7 +3,8 @@ import pytest
 
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Arc, Displaced, NodalCurve, Parametric
-from hoblock.errors import CurveError, TopologyError
+from hoblock.errors import CurveError, GradingError, TopologyError
+from hoblock.generate import generate, layout
 from hoblock.grading import Exponential, Reversed, Uniform
 
 VERTICES = {"a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (0, 1), "e": (1, 1), "f": (2, 1)}
@@ -178,3 +179,77 @@ def test_unknown_names_suggest_close_ones():
 def test_moved_refuses_another_number_of_vertices():
     with pytest.raises(TopologyError, match=r"moved: vertices have shape \(5, 2\); expected \(6, 2\)"):
         build().moved(np.zeros((5, 2)))
+
+
+@pytest.mark.parametrize("order", [1, 4])
+def test_nodal_curves_keep_their_nodes_when_turned_or_moved(order):
+    """Also on a graded edge, whose parameters are not those of the nodes' elements."""
+    graded = {("a", "b"): Exponential(2.0)}
+    bump = Parametric(lambda t: np.stack([t, 0.1 * np.sin(np.pi * t)], axis=-1))
+    options = {"counts": 3, "gradings": graded}
+    mesh = generate(build(curves={("a", "b"): bump}, **options), order)
+    structure = build(**options)
+    edge, _ = structure.topology.edge(0, 1)
+    nodes = mesh.points[layout(structure, order).nodes_of_edge(edge)]
+    forwards = build(curves={("a", "b"): NodalCurve(nodes, order)}, **options)
+    backwards = build(curves={("b", "a"): NodalCurve(nodes[::-1], order)}, **options)
+    for nodal in (forwards, backwards):
+        np.testing.assert_array_equal(generate(nodal, order).points, mesh.points)
+        shifted = nodal.moved(nodal.vertices + np.array([1.0, 2.0]))
+        np.testing.assert_allclose(generate(shifted, order).points, mesh.points + np.array([1.0, 2.0]), atol=1e-14)
+        stretched = nodal.moved(nodal.vertices * [2.0, 1.0])
+        np.testing.assert_allclose(generate(stretched, order).points, mesh.points * [2.0, 1.0], atol=1e-14)
+
+
+def test_moved_checks_its_curves():
+    structure = build()
+    straight = Parametric(lambda t: np.stack([t, 0 * t], axis=-1))
+    edge, _ = structure.topology.edge(0, 1)
+    assert structure.moved(structure.vertices, {edge: straight}).curves[edge] is straight
+    with pytest.raises(CurveError, match=r"curve on edge a–b: .* away from vertex 'a'"):
+        structure.moved(structure.vertices + np.array([0.0, 1e-3]), {edge: straight})
+    stray = NodalCurve(np.array([(0, 0), (0.5, 0.2), (1.1, 0)]), 2)
+    with pytest.raises(CurveError, match=r"is 0\.1 away from vertex 'b'"):
+        structure.moved(structure.vertices, {edge: stray})
+    for key in (99, -1, ("a", "b")):
+        with pytest.raises(TopologyError, match=r"moved: curves has the key .* expected edge numbers from 0 to 6"):
+            structure.moved(structure.vertices, {key: straight})
+
+
+def test_chains_of_motions_come_back(rng):
+    arc = Arc.from_center((0.5, -1.0), np.array([0.0, 0.0]), np.array([1.0, 0.0]))
+    start = build(counts=2, curves={("a", "b"): arc})
+    mesh = generate(start, 5)
+    structure = start
+    for _ in range(20):
+        structure = structure.moved(start.vertices + rng.uniform(-0.05, 0.05, start.vertices.shape))
+    np.testing.assert_allclose(generate(structure.moved(start.vertices), 5).points, mesh.points, atol=1e-14)
+    assert isinstance(structure.curves[structure.topology.edge(0, 1)[0]].curve, Arc)
+
+
+def test_tolerances_follow_size_and_distance_from_the_origin():
+    for size, place in ((1e-6, 0.0), (1e6, 0.0), (0.05, 1e6)):
+        corners = place + size * np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+        arc = Arc.from_center((place + 0.5 * size, place + 2 * size), corners[0], corners[1])
+        assert BlockStructure.build(corners, [(0, 1, 2, 3)], curves={(0, 1): arc}).curves
+        off = Parametric(lambda t, c=corners, s=size: (c[0] + t[:, None] * (c[1] - c[0])) + 1e-4 * s)
+        with pytest.raises(CurveError, match="away from vertex '0'"):
+            BlockStructure.build(corners, [(0, 1, 2, 3)], curves={(0, 1): off})
+
+
+def test_one_group_may_be_given_by_name_alone():
+    assert build().restricted("left").topology.vertex_names == ("a", "b", "d", "e")
+    assert build().shared_edges("left", "right").tolist() == [build().topology.edge(1, 4)[0]]
+
+
+@pytest.mark.parametrize("edges", [[], [77], [-1], [0.7], [2, 2], [[0, 1]]])
+def test_groups_of_edges_name_edges(edges):
+    with pytest.raises(TopologyError, match=r"edges.wall: .* expected numbers of edges from 0 to 6, at least one"):
+        build().with_edge_group("wall", edges)
+
+
+def test_curves_and_gradings_are_functions():
+    with pytest.raises(CurveError, match=r"curves: edge a–b has 3.0; expected a function of t in \[0, 1\]"):
+        build(curves={("a", "b"): 3.0})
+    with pytest.raises(GradingError, match=r"gradings: edge a–b has 1\.5; expected a function"):
+        build(gradings={("a", "b"): 1.5})

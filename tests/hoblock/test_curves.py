@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hoblock.curves import Arc, Displaced, NodalCurve, Parametric, Reversed
+from hoblock.curves import Arc, Displaced, NodalCurve, Parametric, Reversed, reverse
 from hoblock.errors import CurveError
 from hoblock.reference import gauss_lobatto
 
@@ -86,3 +86,28 @@ def test_nodal_curve_interpolates_its_nodes_and_is_a_polynomial_in_each_element(
 def test_nodal_curve_keeps_its_points_without_a_copy():
     points = np.zeros((5, 2))
     assert NodalCurve(points, 2).points is points
+
+
+def test_reversed_nodal_curves_stay_nodal():
+    nodes = np.array([(0, 0), (0.2, 0.1), (1, 0)])
+    turned = reverse(NodalCurve(nodes, 2))
+    assert isinstance(turned, NodalCurve)
+    np.testing.assert_array_equal(turned.points, nodes[::-1])
+    arc = Arc((0.0, 0.0), 1.0, 0.0, 1.0)
+    assert reverse(reverse(arc)) is arc
+    np.testing.assert_allclose(reverse(arc)(T), arc(1 - T))
+
+
+@pytest.mark.parametrize("place", [1e4, 1e6, -3e7])
+def test_arcs_far_from_the_origin(place):
+    center = np.array([place, -place])
+    first, second = (center + 0.05 * np.array([np.cos(a), np.sin(a)]) for a in (0.3, 1.4))
+    arc = Arc.from_center(tuple(center), first, second)
+    assert arc.opening == pytest.approx(1.1, rel=1e-6)
+
+
+def test_nodal_curves_need_an_order_and_finite_nodes():
+    with pytest.raises(CurveError, match="nodal curve: order is 0; expected an integer >= 1"):
+        NodalCurve(np.zeros((5, 2)), 0)
+    with pytest.raises(CurveError, match=r"nodal curve: points\[1\] is \[nan, 0.0\]; expected finite coordinates"):
+        NodalCurve(np.array([(0, 0), (np.nan, 0), (1, 0)]), 2)

@@ -1,16 +1,20 @@
+import gc
+import time
+import tracemalloc
+import weakref
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from hoblock.blocks import BlockStructure
-from hoblock.curves import Arc, NodalCurve
+from hoblock.curves import Arc, NodalCurve, Parametric
 from hoblock.errors import CurveError, GradingError, InvalidMeshError
 from hoblock.generate import changed_blocks, generate, layout, raise_if_invalid, regenerate
 from hoblock.grading import Exponential, Quadratic
 from hoblock.mesh import QuadMesh
 from hoblock.numbering import side_nodes
-from hoblock.quality import det_jacobian
+from hoblock.quality import det_jacobian, scaled_jacobian
 from hoblock.reference import gauss_lobatto, tensor_quadrature
 
 LAYOUTS = ("grid", "disc", "star", "annulus")
@@ -267,3 +271,162 @@ def test_bad_arguments(layouts):
     nodal = layouts.square(counts=2, curves={("a", "b"): three})
     with pytest.raises(CurveError, match="edge a–b: the nodal curve has 3 elements; the edge has 2"):
         generate(nodal, 2)
+
+
+@pytest.mark.parametrize("order", [-1, 33, 2.0, 2.5, "4", True, None])
+def test_orders_are_integers_in_range(order, layouts):
+    with pytest.raises(ValueError, match=r"order is .*; expected an integer"):
+        generate(layouts.square(), order)
+
+
+@pytest.mark.parametrize("order", [1, 2, 5, 8, 12, 16])
+def test_quarter_annulus_of_graded_layers(order):
+    """Eight layers by two elements: straight lines inside would make the inner layers overlap."""
+    corners = np.array([(1, 0), (1.6, 0), (0, 1.6), (0, 1)])
+    arcs = {(a, b): Arc.from_center((0.0, 0.0), corners[a], corners[b]) for a, b in ((0, 3), (1, 2))}
+    layers = {(0, 1): Exponential(3.0), (3, 2): Exponential(3.0)}
+    structure = BlockStructure.build(
+        corners, [(0, 1, 2, 3)], counts={(0, 1): 8, (1, 2): 2}, curves=arcs, gradings=layers
+    )
+    mesh = generate(structure, order)
+    assert len(mesh.cells) == 16
+    assert scaled_jacobian(mesh).min() > (0.999 if order > 1 else 0.92)
+    if order > 4:
+        assert area(mesh) == pytest.approx(np.pi / 4 * (1.6**2 - 1), rel=1e-7)
+
+
+def test_layers_a_hundred_thousand_times_thinner_than_long():
+    height = 1e-5
+    corners = np.array([(1, 0), (1 + height, 0), (0, 1 + height), (0, 1), (2, 0), (0, 2)])
+    arcs = {(a, b): Arc.from_center((0.0, 0.0), corners[a], corners[b]) for a, b in ((0, 3), (1, 2), (4, 5))}
+    structure = BlockStructure.build(corners, [(0, 1, 2, 3), (1, 4, 5, 2)], counts=4, curves=arcs)
+    assert area(generate(structure, 6)) == pytest.approx(np.pi / 4 * 3, rel=1e-6)
+
+
+def test_airfoil_from_parametric_edges(rng):
+    def surface(t, side):  # NACA 0012, dense at the nose
+        x = t**2
+        y = 0.6 * (0.2969 * t - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+        return np.stack([x, side * y], axis=-1)
+
+    middle = np.sqrt(0.3)
+    thick = surface(np.array([middle]), 1.0)[0]
+    vertices = {
+        "nose": (0, 0), "tail": (1, 0), "top": thick, "bottom": thick * [1, -1],
+        "W": (-1.5, 0), "E": (2.5, 0), "N": (0.3, 1.5), "S": (0.3, -1.5),
+    }  # fmt: skip
+    blocks = [
+        ("nose", "top", "N", "W"), ("top", "tail", "E", "N"),
+        ("bottom", "nose", "W", "S"), ("tail", "bottom", "S", "E"),
+    ]  # fmt: skip
+    walls = {
+        ("nose", "top"): Parametric(lambda t: surface(middle * t, 1.0)),
+        ("tail", "top"): Parametric(lambda t: surface(1 + (middle - 1) * t, 1.0)),
+        ("bottom", "nose"): Parametric(lambda t: surface(middle * (1 - t), -1.0)),
+        ("bottom", "tail"): Parametric(lambda t: surface(middle + (1 - middle) * t, -1.0)),
+    }
+    layers = {pair: Exponential(3.0) for pair in (("nose", "W"), ("top", "N"), ("tail", "E"), ("bottom", "S"))}
+    structure = BlockStructure.build(vertices, blocks, counts=6, curves=walls, gradings=layers)
+    coefficients = np.array([0.2969 / 1.5, -0.126 / 2, -0.3516 / 3, 0.2843 / 4, -0.1036 / 5])
+    profile = 2 * 0.6 * coefficients.sum()
+    assert area(generate(structure, 8)) == pytest.approx(6.0 - profile, rel=1e-9)
+
+
+def test_parts_that_do_not_touch_and_regions_with_holes(layouts):
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    two = np.concatenate([square, square + np.array([3, 0])])
+    mesh = generate(BlockStructure.build(two, [(0, 1, 2, 3), (4, 5, 6, 7)]), 3)
+    assert len(mesh.points) == 32
+    assert area(mesh) == pytest.approx(2.0)
+    ring = generate(layouts.annulus(sectors=3, counts=4), 7)
+    assert area(ring) == pytest.approx(3 * np.pi, rel=1e-7)
+
+
+def test_strongly_different_gradings_of_opposite_edges(layouts):
+    gradings = {("a", "b"): Exponential(20), ("d", "c"): Exponential(-20)}
+    gradings |= {("a", "d"): Exponential(-20), ("b", "c"): Exponential(20)}
+    assert area(generate(layouts.square(counts=10, gradings=gradings), 4)) == pytest.approx(1.0)
+
+
+def test_misuse_of_out_and_previous(layouts):
+    structure = layouts.square(counts=2)
+    mesh = generate(structure, 3)
+    with pytest.raises(ValueError, match="out is read-only, as the points of meshes are"):
+        regenerate(mesh, structure, out=mesh.points)
+    with pytest.raises(ValueError, match="out is a list; expected an array"):
+        regenerate(mesh, structure, out=[0.0])
+    other = BlockStructure.build(*layouts.quads("disc"))
+    graded = layouts.square(counts=2, gradings={("a", "b"): Exponential(2.0)})
+    for previous in (other, graded):
+        with pytest.raises(ValueError, match="previous has other blocks, counts or gradings"):
+            regenerate(mesh, structure, previous=previous)
+    named = structure.with_edge_group("all", [0, 1, 2, 3])
+    np.testing.assert_array_equal(regenerate(mesh, structure, previous=named).points, mesh.points)
+
+
+@pytest.mark.parametrize("buffer", [np.empty((98, 2))[::2], np.empty((49, 2), order="F"), np.empty((49, 3))[:, :2]])
+def test_out_of_any_layout_in_memory(buffer, layouts):
+    structure = layouts.square(counts=2)
+    mesh = generate(structure, 3)
+    moved = structure.moved(structure.vertices * [2.0, 1.0])
+    assert np.shares_memory(regenerate(mesh, moved, out=buffer).points, buffer)
+    np.testing.assert_allclose(buffer, mesh.points * [2.0, 1.0], atol=1e-15)
+
+
+def test_a_curve_that_fails_between_its_ends_is_named(layouts):
+    def gap(t):
+        return np.stack([t, np.where((t > 0.2) & (t < 0.8), np.nan, 0.0)], axis=-1)
+
+    with pytest.raises(CurveError, match="edge a–b: parametric curve: not finite at t = "):
+        generate(layouts.square(counts=2, curves={("a", "b"): Parametric(gap)}), 3)
+
+    def flat(t):
+        return np.stack([t, 0 * t], axis=-1) if len(t) == 2 else t
+
+    with pytest.raises(CurveError, match=r"edge a–b: the curve returned shape \(7,\) for 7 parameters; expected"):
+        generate(layouts.square(counts=2, curves={("a", "b"): flat}), 3)
+
+
+def test_layouts_live_as_long_as_their_structures(layouts):
+    structure = layouts.square(counts=3)
+    first = layout(structure, 4)
+    assert layout(structure.moved(structure.vertices + 1.0), 4) is first
+    alive = weakref.ref(first)
+    del structure, first
+    gc.collect()
+    assert alive() is None
+
+
+def wide_structure(**options):
+    x, y = np.meshgrid(np.arange(5.0), np.arange(5.0))
+    quads = [(5 * j + i, 5 * j + i + 1, 5 * j + i + 6, 5 * j + i + 5) for j in range(4) for i in range(4)]
+    return BlockStructure.build(np.stack([x.ravel(), y.ravel()], axis=-1), quads, counts=40, **options)
+
+
+def test_regeneration_takes_less_time_than_writing_its_nodes_as_pairs():
+    structure = wide_structure()
+    mesh = generate(structure, 4, check=False)
+    buffer, values = np.empty_like(mesh.points), np.array(mesh.points)
+    listed = np.random.default_rng(17).permutation(mesh.cells).ravel()
+    nodes = listed[np.sort(np.unique(listed, return_index=True)[1])]  # as a mesh is numbered: in pieces
+    pairs, regenerated = [], []
+    for _ in range(9):
+        start = time.perf_counter()
+        buffer[nodes] = values
+        middle = time.perf_counter()
+        regenerate(mesh, structure, out=buffer)
+        pairs.append(middle - start)
+        regenerated.append(time.perf_counter() - middle)
+    assert min(regenerated) < 0.8 * min(pairs)
+
+
+def test_different_gradings_need_no_temporary_arrays_of_the_size_of_the_mesh():
+    rows = [(5 * j + i, 5 * j + i + 1, j) for j in range(5) for i in range(4)]
+    structure = wide_structure(gradings={(a, b): Exponential(1.0 if j % 2 else -1.0) for a, b, j in rows})
+    mesh = generate(structure, 4, check=False)
+    buffer = np.empty_like(mesh.points)
+    tracemalloc.start()
+    regenerate(mesh, structure, out=buffer)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 1.5 * buffer.nbytes

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from hoblock.errors import GradingError
-from hoblock.grading import Cubic, Exponential, Quadratic, Reversed, Uniform, element_corners
+from hoblock.grading import Cubic, Exponential, Quadratic, Reversed, Uniform, element_corners, node_parameters
+from hoblock.reference import gauss_lobatto
 
 S = np.linspace(0.0, 1.0, 101)
 ALL = [
@@ -93,3 +94,12 @@ def test_a_map_that_moves_the_ends_is_refused():
 def test_a_map_that_is_not_increasing_is_refused(grading):
     with pytest.raises(GradingError, match=r"is not strictly increasing: corner .* Weaken the grading"):
         element_corners(grading, 200)
+
+
+def test_node_parameters_scale_the_reference_nodes_to_graded_elements():
+    t = node_parameters(Exponential(2.0), 3, 4)
+    corners = element_corners(Exponential(2.0), 3)
+    np.testing.assert_array_equal(t[::4], corners)
+    for k in range(3):
+        inside = corners[k] + (gauss_lobatto(4) + 1) / 2 * (corners[k + 1] - corners[k])
+        np.testing.assert_allclose(t[4 * k : 4 * k + 5], inside, atol=1e-15)

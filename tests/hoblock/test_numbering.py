@@ -47,3 +47,10 @@ def test_corners_come_first_then_edges_then_interiors():
     assert cells[:, corner_nodes(3)].max() == 5
     assert sorted(cells[:, [5, 6, 9, 10]].ravel()) == list(range(20, 28))
     assert np.array_equal(cells[0, side_nodes(3)[1]], cells[1, side_nodes(3)[3]])
+
+
+def test_edges_are_numbered_in_the_order_of_their_corners():
+    cells, count = number_nodes(np.array([(7, 900, 5, 3), (900, 11, 4, 5)]), 3)
+    assert count == 28
+    np.testing.assert_array_equal(cells[0, side_nodes(3)[1]], cells[1, side_nodes(3)[3]])
+    assert np.unique(cells).size == count

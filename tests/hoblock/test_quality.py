@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -209,3 +211,51 @@ def test_measures_against_gmsh(layouts, rng):
             assert np.all(upper >= sampled.max(axis=1) - 1e-12)
     finally:
         gmsh.finalize()
+
+
+@pytest.mark.parametrize("order", [8, 10, 12, 16, 24, 32])
+def test_bounds_are_sharp_at_high_orders(order):
+    """det J of a trapezium is linear, between 0.25 and 0.3, whatever the order of the element."""
+    lower, upper = det_jacobian_bounds(bilinear([(0, 0), (1, 0), (1.2, 1), (0, 1)], order))
+    assert lower[0] == pytest.approx(0.25, abs=1e-9)
+    assert upper[0] == pytest.approx(0.3, abs=1e-9)
+
+
+@pytest.mark.parametrize("order", [10, 16])
+def test_curved_elements_of_high_order_are_certified(order):
+    def wavy(xi, eta):
+        return xi + 0.15 * np.sin(3 * eta), eta + 0.15 * np.sin(3 * xi)
+
+    def crossing(xi, eta):
+        return xi + 0.5 * np.sin(3 * eta), eta + 0.5 * np.sin(3 * xi)
+
+    assert invalid_elements(element(wavy, order)) == []
+    lower, upper = det_jacobian_bounds(element(wavy, order))
+    sampled = det_jacobian(element(wavy, order), grid(np.linspace(-1, 1, 101)))
+    assert lower[0] <= sampled.min()
+    assert upper[0] >= sampled.max()
+    assert sampled.min() - lower[0] < 0.4
+    (bad,) = invalid_elements(element(crossing, order))
+    assert bad.det_J == pytest.approx(1 - 2.25, abs=1e-2)
+
+
+@pytest.mark.parametrize("order", [9, 12])
+def test_bounds_hold_where_high_modes_are_strong(order, rng):
+    mesh = perturbed(rng, order, 0.4)
+    sampled = det_jacobian(mesh, grid(np.linspace(-1, 1, 41)))
+    for subdivisions in (0, 2):
+        lower, upper = det_jacobian_bounds(mesh, subdivisions)
+        assert np.all(lower <= sampled.min(axis=1))
+        assert np.all(upper >= sampled.max(axis=1))
+
+
+def test_many_bad_elements_are_reported_without_cutting_them(rng):
+    """Cutting an inverted element six times makes 4096 pieces of it: 2000 such elements would fill the memory."""
+    mesh = perturbed(rng, 4, 0.1, count=2000)
+    mirrored = mesh.with_points(mesh.points * [-1, 1])
+    tracemalloc.start()
+    found = invalid_elements(mirrored)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert len(found) == 2000
+    assert peak < 2e8

@@ -3,13 +3,14 @@ import pytest
 from numpy.polynomial import legendre
 
 from hoblock.reference import (
-    bernstein_from_lagrange,
+    bernstein_from_legendre,
     differentiation_matrix,
     equispaced,
     gauss_legendre,
     gauss_lobatto,
     lagrange,
     lagrange_derivative,
+    legendre_from_gauss,
     tensor_basis,
     tensor_gradient,
     tensor_quadrature,
@@ -107,27 +108,34 @@ def test_lagrange_is_stable_next_to_a_node():
     np.testing.assert_allclose(close, np.eye(7), atol=1e-13)
 
 
-@pytest.mark.parametrize("order", [1, 2, 5, 11])
+@pytest.mark.parametrize("order", [1, 2, 5, 11, 15])
 def test_bernstein_coefficients_of_known_polynomials(order):
-    t = np.linspace(0, 1, order + 1)
-    B = bernstein_from_lagrange(order)
-    np.testing.assert_allclose(B @ np.ones(order + 1), 1.0, atol=1e-8)
-    np.testing.assert_allclose(B @ t, np.arange(order + 1) / order, atol=1e-8)
+    x, _ = gauss_legendre(order + 1)
+    t = (x + 1) / 2
+    B = bernstein_from_legendre(order) @ legendre_from_gauss(order + 1)
+    np.testing.assert_allclose(B @ np.ones(order + 1), 1.0, atol=1e-10)
+    np.testing.assert_allclose(B @ t, np.arange(order + 1) / order, atol=1e-10)
     last = np.zeros(order + 1)
     last[-1] = 1.0
-    np.testing.assert_allclose(B @ t**order, last, atol=1e-8)
+    np.testing.assert_allclose(B @ t**order, last, atol=1e-10)
 
 
 @pytest.mark.parametrize("order", [3, 9, 15])
 def test_bernstein_coefficients_bracket_the_polynomial(order, rng):
+    nodes, _ = gauss_legendre(order + 1)
     for _ in range(20):
         values = rng.standard_normal(order + 1)
-        coefficients = bernstein_from_lagrange(order) @ values
-        sampled = lagrange(gauss_lobatto(order), np.linspace(-1, 1, 200)) @ (
-            lagrange(equispaced(order), gauss_lobatto(order)) @ values
-        )
+        coefficients = bernstein_from_legendre(order) @ legendre_from_gauss(order + 1) @ values
+        sampled = lagrange(nodes, np.linspace(-1, 1, 200)) @ values
         assert coefficients.min() <= sampled.min() + 1e-9
         assert coefficients.max() >= sampled.max() - 1e-9
+
+
+@pytest.mark.parametrize("count", [2, 7, 40])
+def test_legendre_coefficients_reproduce_a_polynomial(count, rng):
+    nodes, _ = gauss_legendre(count)
+    values = rng.standard_normal(count)
+    np.testing.assert_allclose(legendre.legval(nodes, legendre_from_gauss(count) @ values), values, atol=1e-12 * count)
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])

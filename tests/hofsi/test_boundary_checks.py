@@ -63,7 +63,16 @@ MOTION = '[[motion]]\non = "{}"\nx = 0\ny = "0.1*sin(t)"\n\n[time]'
             'inside = [["a1", "c1"]]',
             r"mesh.edges.inside: .* over a1–c1, which is not an edge of any block",
         ),
-        ('"flap", "bottom"]', '"foot"]', r"quantities.lift.on: edge b0–c0 of 'foot' belongs to solid 'rubber' alone"),
+        (
+            '"flap", "bottom"]',
+            '"foot", "flap"]',
+            r"quantities.lift.on: edge b0–b1 of 'flap' is at the fluid and edge b0–c0 of 'foot' at a solid alone",
+        ),
+        (
+            '"flap", "bottom"]',
+            '"flap", "inside"]',
+            r"quantities.lift.on: edge a1–b1 of 'inside' is inside the fluid; .* boundary of the fluid or a solid",
+        ),
         ("[time]", MOTION.format("flap"), r"motion\[0\].on: edge b0–b1 of 'flap' .* it moves with the solid"),
         ("[time]", MOTION.format("inside"), r"motion\[0\].on: edge a1–b1 of 'inside' is inside the fluid"),
         (
@@ -104,7 +113,25 @@ def test_motion_needs_a_fluid(read_changed: Read, solid_alone: str) -> None:
         read_changed(("[time]", MOTION.format("flap")), text=solid_alone)
 
 
-def test_force_needs_a_fluid(read_changed: Read, solid_alone: str) -> None:
-    force = '\n[quantities.F]\ntype = "force"\non = "foot"\ncomponent = "x"\n'
-    with pytest.raises(CaseError, match=r"quantities.F: a force of the fluid, and there is no \[fluid\]"):
-        read_changed(text=solid_alone + force)
+@pytest.mark.parametrize("on", ["foot", "flap"])
+def test_forces_may_be_those_of_a_solid(read_changed: Read, solid_alone: str, on: str) -> None:
+    force = f'\n[quantities.F]\ntype = "force"\non = "{on}"\ncomponent = "x"\n'
+    assert read_changed(text=solid_alone + force).quantities[0].on == (on,)
+
+
+def test_dry_edges_of_a_coupled_solid_have_a_force(read_changed: Read) -> None:
+    assert read_changed(('"flap", "bottom"]', '"foot"]')).quantities[1].on == ("foot",)
+
+
+def test_forces_inside_a_solid_are_refused(read_changed: Read, solid_alone: str) -> None:
+    halves = 'solid = [["b0", "m0", "m1", "b1"], ["m0", "c0", "c1", "m1"]]'
+    changes = (
+        ('solid = [["b0", "c0", "c1", "b1"]]', halves),
+        ("c0 = [1.2, 0]", "c0 = [1.2, 0]\nm0 = [1.1, 0]\nm1 = [1.1, 0.5]"),
+        ('flap = [["b0", "b1", "c1", "c0"]]', 'flap = [["b0", "b1", "m1", "c1", "c0"]]\nmiddle = [["m0", "m1"]]'),
+        ('tip = [["b1", "c1"]]', ""),
+        ('foot = [["b0", "c0"]]', 'foot = [["b0", "m0", "c0"]]'),
+    )
+    force = '\n[quantities.F]\ntype = "force"\non = "middle"\ncomponent = "x"\n'
+    with pytest.raises(CaseError, match=r"quantities.F.on: .* is inside solid 'rubber'; .* boundary of a solid"):
+        read_changed(*changes, text=solid_alone + force)

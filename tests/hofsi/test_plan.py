@@ -187,7 +187,7 @@ def test_tables_that_nothing_reads(read_changed: Read, fluid_alone: str, solid_a
 
     assert unused(read_changed(more)) == []
     assert unused(read_changed(more, text=fluid_alone)) == ["[coupling]", "[mover]", "[nonlinear]"]
-    assert unused(read_changed(more, text=solid_alone)) == ["[coupling]", "[mover]", "[linear]"]
+    assert unused(read_changed(more, text=solid_alone)) == ["[coupling]", "[mover]"]
     newton = ("viscosity = 0.01", 'viscosity = 0.01\nconvection = "newton"')
     assert unused(read_changed(more, newton, text=fluid_alone)) == ["[coupling]", "[mover]"]
 
@@ -196,6 +196,13 @@ def test_tables_that_nothing_reads(read_changed: Read, fluid_alone: str, solid_a
 def test_times_of_fields(read_changed: Read, every: int, times: str) -> None:
     case = read_changed(("[output]", f"[output]\nevery = {every}"))
     assert _built(plan(case), "fields").endswith(f" {times}")
+
+
+@pytest.mark.parametrize(("solver", "name"), [("direct", "sparse LU"), ("amg", "algebraic multigrid to")])
+def test_linear_solver_of_solids(read_changed: Read, solid_alone: str, solver: str, name: str) -> None:
+    planned = plan(read_changed(("[coupling]", f'[linear]\nsolver = "{solver}"'), text=solid_alone))
+    assert f"after static condensation, {name}" in _built(planned, "solid")
+    assert ("algebraic multigrid" in _names(planned.skipped)) == (solver == "direct")
 
 
 def test_output_that_is_not_wanted(read_changed: Read) -> None:

@@ -178,6 +178,32 @@ def test_forces_are_those_of_the_fluid_on_the_edges_times_a_factor(
     assert read["top"](record) != read["lift"](record)
 
 
+def test_the_foot_of_a_coupled_solid_carries_its_weight_the_flow_and_its_inertia(flap: str) -> None:
+    data = tomllib.loads(flap)
+    data["mesh"]["order"] = 3
+    data["time"], data["output"] = {"dt": 0.1, "steps": 3}, {}
+    data["solid"][0]["gravity"] = [0.0, -1.0]
+    data["quantities"] = {
+        f"{name}_{component}": {"type": "force", "on": name, "component": component}
+        for name in ("foot", "flap")
+        for component in "xy"
+    }
+    problem = build(read_case(data, "flap.toml"))
+    read = evaluators(problem)
+    assert problem.solid is not None
+    mass = problem.solid.solver.equations.mass
+    momenta = [np.zeros(2)]
+    for record in simulate(problem):
+        assert record.state.solid is not None
+        momenta.append((mass @ record.state.solid.velocity).sum(axis=0))
+        first = record.step == 1
+        weights = (1.0, -1.0) if first else (1.5, -2.0, 0.5)
+        rate = sum(w * m for w, m in zip(weights, momenta[::-1], strict=False)) / 0.1
+        foot, flow = ([read[f"{name}_{c}"](record) for c in "xy"] for name in ("foot", "flap"))
+        np.testing.assert_allclose(foot, flow + np.array([0.0, -0.2 * 0.5 * 3.0]) - rate, rtol=1e-7)
+        assert min(np.abs(foot)) > 0.1
+
+
 @pytest.mark.parametrize(
     ("quantity", "place", "message"),
     [
@@ -190,7 +216,7 @@ def test_forces_are_those_of_the_fluid_on_the_edges_times_a_factor(
         ),
         (PressureDifference("q", INSIDE, Point(9.0, 0.0), "quantities.q"), "quantities.q.to", "outside the fluid's"),
         (PressureDifference("q", IN_SOLID, INSIDE, "quantities.q"), "quantities.q.from", "outside the fluid's mesh"),
-        (Force("q", ("foot",), "x", place="quantities.q"), "quantities.q.on", "no edges named 'foot' at the fluid"),
+        (Force("q", ("shoe",), "x", place="quantities.q"), "quantities.q.on", "no edges named 'shoe' at the fluid"),
         (Force("t", ("top",), "x", place="quantities.t"), "quantities.t", "'t' is a column of every table"),
     ],
 )

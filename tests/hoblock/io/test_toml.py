@@ -7,7 +7,7 @@ import copy
 import pytest
 
 from hoblock.errors import SceneError
-from hoblock.io.toml import apply_overrides, naming_file, read_toml
+from hoblock.io.toml import apply_overrides, naming_file, read_toml, repeat_option
 
 DATA = {
     "title": "flow",
@@ -156,3 +156,20 @@ def test_overrides_are_applied_in_order():
 def test_overrides_refused(override, message):
     with pytest.raises(SceneError, match=message):
         apply_overrides(DATA, [override])
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            ["run", "s.toml", "--set", "a=1", "b.c=2", "-o", "x"],
+            ["run", "s.toml", "--set", "a=1", "--set", "b.c=2", "-o", "x"],
+        ),
+        (["--set", "a=1", "s.toml"], ["--set", "a=1", "s.toml"]),
+        (["--set", "a=1", "--set", "b=2", "c=[1, 2]"], ["--set", "a=1", "--set", "b=2", "--set", "c=[1, 2]"]),
+        (["a=1", "--set"], ["a=1", "--set"]),
+        (["--set", "a=1", "dir/x=3.toml"], ["--set", "a=1", "dir/x=3.toml"]),
+    ],
+)
+def test_several_changes_after_one_option(words, expected):
+    assert repeat_option(words) == expected

@@ -12,8 +12,8 @@ def test_residuals_are_relative_to_the_step():
     first = test.residuals(np.array([1.5, 0.0]), np.array([0.05, 0.0]), np.array([12.0, 0.0]))
     assert first.displacement == pytest.approx(0.1)
     assert first.force == np.inf  # nothing to compare the first force with
-    second = test.residuals(np.array([1.5, 0.0]), np.array([0.005, 0.0]), np.array([12.0, 0.5]))
-    assert second.displacement == pytest.approx(0.01)
+    second = test.residuals(np.array([1.5, 0.0]), np.array([0.025, 0.0]), np.array([12.0, 0.5]))
+    assert second.displacement == pytest.approx(0.05)
     assert second.force == pytest.approx(0.5 / np.hypot(2.0, 0.5))
     assert second.largest == second.force
 
@@ -33,3 +33,26 @@ def test_a_problem_at_rest_has_converged_at_once():
     test = ConvergenceTest(1e-6)
     test.begin_step(np.zeros(3), np.zeros(3))
     assert test.residuals(np.zeros(3), np.zeros(3), np.zeros(3)).largest == 0.0
+
+
+def test_the_force_residual_foresees_the_next_iteration():
+    """A force proportional to the displacement, whose residual falls by a factor of 100 in each iteration."""
+    test = ConvergenceTest(1e-6)
+    test.begin_step(0.0, 0.0)
+    forces, residuals = [], []
+    for k in range(6):
+        off = 100.0**-k
+        forces.append(50.0 + 7.0 * off)
+        residuals.append(test.residuals(np.array([2.0]), np.array([0.01 * off]), np.array([forces[-1]])).force)
+    next_changes = np.abs(np.diff(forces)) / forces[:-1]
+    ratio = np.array(residuals[1:5]) / next_changes[1:]
+    assert (ratio > 1.0).all()  # never less than what comes
+    assert (ratio < 5.0).all()  # the change before it is 100 times as large
+
+
+def test_a_force_that_has_stopped_changing_has_converged():
+    test = ConvergenceTest(1e-6)
+    test.begin_step(0.0, 0.0)
+    for off, force in ((1e-2, 5.0), (1e-4, 4.0)):
+        test.residuals(np.array([2.0]), np.array([off]), np.array([force]))
+    assert test.residuals(np.array([2.0]), np.array([1e-3]), np.array([4.0])).force == 0.0

@@ -9,6 +9,7 @@ from hofsi.build import build
 from hofsi.errors import CouplingError
 from hofsi.io.scene import read_case
 from hofsi.simulate import simulate
+from hofsi.solvers.fluid import FluidStep
 
 # A solid under a fluid in steady Couette flow: simple shear with 2 E_xy = tau/mu and C_yy = 1, so that the stress of a
 # St. Venant-Kirchhoff solid is pure shear and both fields are linear in space while the geometry changes by half.
@@ -271,3 +272,45 @@ def test_a_step_that_does_not_converge_is_an_error():
         CouplingError, match=r"not converged after 2 iterations: displacement residual .*, force residual"
     ):
         run(FLAP, ("[time]", "[coupling]\nmax_iterations = 2\n[time]"))
+
+
+def test_a_step_is_not_accepted_before_the_flow_has_converged(monkeypatch):
+    """A loose tolerance of the coupling is reached before two Picard iterations a time have solved the flow."""
+    solved = []
+    solve = FluidStep.solve
+
+    def spy(self, *arguments, **options):
+        result = solve(self, *arguments, **options)
+        solved.append(self.converged)
+        return result
+
+    monkeypatch.setattr(FluidStep, "solve", spy)
+    problem = build(
+        read_case(
+            tomllib.loads(
+                FLAP.replace("[time]", '[coupling]\ngeometry = "implicit"\ntolerance = 0.1\n[time]').replace(
+                    "viscosity = 0.05", 'viscosity = 0.05\nconvection = "picard"'
+                )
+            ),
+            "test.toml",
+        )
+    )
+    for _ in simulate(problem):
+        assert solved[-1]
+    assert not all(solved)
+
+
+def test_every_mesh_of_a_step_counts():
+    made = {}
+    for geometry in ("extrapolated", "implicit"):
+        _, records = run(FLAP, ("[time]", f'[coupling]\ngeometry = "{geometry}"\n[time]'))
+        made[geometry] = [(r.state.mesh.regenerated, r.coupling.iterations) for r in records]
+    blocks = max(count for count, _ in made["extrapolated"])
+    assert 0 < blocks <= 5
+    assert [count for count, _ in made["implicit"][1:]] == [blocks * times for _, times in made["implicit"][1:]]
+
+
+def test_a_tolerance_below_that_of_the_solid_is_reached():
+    """The solid is solved more accurately than the coupling asks for."""
+    _, records = run(FLAP, ("[time]", "[coupling]\ntolerance = 1e-11\n[time]"))
+    assert max(record.coupling.iterations for record in records) <= 15

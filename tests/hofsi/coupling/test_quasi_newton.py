@@ -71,3 +71,19 @@ def test_a_repeated_residual_makes_no_column():
     first = accelerator.next(d, r)
     np.testing.assert_array_equal(accelerator.next(d, r), first)
     assert accelerator.columns == 0
+
+
+def test_a_contradicting_secant_of_an_earlier_step_is_not_amplified():
+    """Two steps with slightly different Jacobians and nearly the same secant: the newer one decides."""
+    accelerator = InverseLeastSquares(5, 1e-3, 0.5)
+    for tilt, slope in ((1e-3, 0.6), (0.0, 0.5)):
+        accelerator.begin_step()
+        for k in range(2):
+            d = np.array([2.0 * k, 0.0])
+            residual = np.array([1.0 - slope * 2.0 * k, tilt * k])
+            last = accelerator.next(d, residual)
+        accelerator.end_step()
+    np.testing.assert_allclose(last, [2.0, 0.0], atol=1e-9)
+    accelerator.begin_step()
+    off = accelerator.next(np.array([2.0, 0.0]), np.array([0.0, 1e-3]))
+    assert np.linalg.norm(off - last) < 0.05  # 0.4 by least squares alone, through the difference of the slopes

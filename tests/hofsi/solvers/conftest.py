@@ -99,7 +99,16 @@ class Flows:
 
     @staticmethod
     def solver(
-        mesh, conditions, *, density=1.0, viscosity=1.0, tolerance=1e-12, max_iterations=25, interface=(), **fluid
+        mesh,
+        conditions,
+        *,
+        density=1.0,
+        viscosity=1.0,
+        tolerance=1e-12,
+        max_iterations=25,
+        interface=(),
+        driven=None,
+        **fluid,
     ):
         for name, variables in (("body_force", ("x", "y", "t")), ("initial_velocity", ("x", "y"))):
             if name in fluid:
@@ -110,6 +119,7 @@ class Flows:
             case.NonlinearSettings(tolerance, max_iterations),
             case.LinearSettings(),
             np.array(interface, dtype=np.int64),
+            driven,
         )
 
     @staticmethod

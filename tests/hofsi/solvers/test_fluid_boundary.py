@@ -34,7 +34,43 @@ def test_the_interface_comes_before_walls_walls_before_velocities_velocities_bef
     np.testing.assert_allclose(u[top], np.broadcast_to([7.0, -2.0], (len(top), 2)), rtol=0.0, atol=1e-14)
     inside = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([left, bottom, right, top]))
     np.testing.assert_array_equal(u[inside], 7.0)
-    np.testing.assert_array_equal(solver.boundary.sticking, np.union1d(left, at("bottom")))
+    relative = np.full(mesh.points.shape, 9.0)
+    solver.boundary.stick(relative, mesh.points, moving)
+    np.testing.assert_array_equal(relative[np.union1d(left, bottom)], 0.0)
+    np.testing.assert_array_equal(relative[np.setdiff1d(np.arange(len(relative)), np.union1d(left, bottom))], 9.0)
+
+
+def test_a_wall_that_is_not_driven_does_not_follow_nodes_that_slide_along_it(flows):
+    # A wall at an angle, a piston on its right side; an outlet that is driven too lets go of the wall's end.
+    turn = 0.4
+    mesh = flows.grid(3, turn=turn)
+    along, across = flows.rotation(turn).T
+    at = mesh.edge_nodes
+    conditions = [case.NoSlip(("bottom", "right")), case.DoNothing(("left",)), case.Slip(("top",))]
+    driven = np.union1d(at("left"), at("right"))
+    solver = flows.solver(mesh, conditions, driven=driven)
+    moving = np.broadcast_to(2.0 * along + 0.5 * across, mesh.points.shape)
+    u = imposed(solver, 0.0, moving)
+    bottom = np.setdiff1d(at("bottom"), at("right"))
+    np.testing.assert_allclose(u[bottom], np.broadcast_to(0.5 * across, (len(bottom), 2)), rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(u[at("right")], moving[at("right")], rtol=0.0, atol=1e-14)
+    relative = np.zeros(mesh.points.shape)
+    solver.boundary.stick(relative, mesh.points, moving)
+    np.testing.assert_allclose(relative[bottom], np.broadcast_to(-2.0 * along, (len(bottom), 2)), rtol=0.0, atol=1e-14)
+    np.testing.assert_array_equal(relative[at("right")], 0.0)
+
+
+def test_a_corner_between_walls_that_are_not_driven_moves_as_both_walls_do(flows):
+    mesh = flows.grid(2)
+    at = mesh.edge_nodes
+    conditions = [case.NoSlip(("bottom", "right")), case.DoNothing(("left", "top"))]
+    solver = flows.solver(mesh, conditions, driven=at("top"))
+    moving = np.broadcast_to([2.0, 0.5], mesh.points.shape)
+    u = imposed(solver, 0.0, moving)
+    corner = np.intersect1d(at("bottom"), at("right"))
+    np.testing.assert_array_equal(u[corner], [[2.0, 0.5]])
+    right = np.setdiff1d(at("right"), corner)
+    np.testing.assert_allclose(u[right], np.broadcast_to([2.0, 0.0], (len(right), 2)), rtol=0.0, atol=1e-14)
 
 
 def test_velocities_are_evaluated_where_the_nodes_are_now(flows):

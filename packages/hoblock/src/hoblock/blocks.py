@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import topology_checks as checks
-from hoblock.curves import Curve, Displaced, NodalCurve
-from hoblock.curves import Reversed as ReversedCurve
-from hoblock.errors import TopologyError
-from hoblock.grading import Grading, Uniform
+from hoblock.curves import Curve, Displaced, NodalCurve, reverse
+from hoblock.errors import CurveError, GradingError, TopologyError
+from hoblock.grading import Grading, Uniform, node_parameters
 from hoblock.grading import Reversed as ReversedGrading
 from hoblock.orientation import orient
 from hoblock.spelling import did_you_mean
@@ -92,7 +91,7 @@ class BlockStructure:
         TopologyError
             Unknown vertices, inverted or non-convex blocks, non-conforming blocks, conflicting counts.
         CurveError
-            A curve that misses its vertices.
+            A curve that misses its vertices, or is none.
         """
         names, positions = checks.vertex_table(vertices)
         number = {name: k for k, name in enumerate(names)}
@@ -111,16 +110,18 @@ class BlockStructure:
         topology = BlockTopology(
             names, quads, topology_edges, block_edges, chains, np.ones(len(chains), dtype=np.int64), groups, {}
         )
-        curved = _directed(topology, curves or {}, vertex, "curves", ReversedCurve)
+        curved = _directed(topology, curves or {}, vertex, "curves", reverse)
         graded = _directed(topology, gradings or {}, vertex, "gradings", ReversedGrading)
         checks.check_geometry(topology, positions, frozenset(curved))
         named = {name: _named(topology, pairs, vertex, f"edges.{name}") for name, pairs in (edges or {}).items()}
-        asked = (
-            {}
-            if isinstance(counts, int)
-            else {(vertex(a, "counts"), vertex(b, "counts")): n for (a, b), n in counts.items()}
-        )
-        per_edge = checks.chain_counts(topology, asked, counts if isinstance(counts, int) else default_count)
+        asked = {}
+        if isinstance(counts, Mapping):
+            for pair, number_of_elements in counts.items():
+                first, second = checks.edge_pair(pair, "counts")
+                asked[vertex(first, "counts"), vertex(second, "counts")] = number_of_elements
+        else:
+            default_count = checks.element_count(counts, "counts")
+        per_edge = checks.chain_counts(topology, asked, default_count)
         topology = replace(topology, counts=per_edge, edge_groups=named)
         _check_ends(topology, positions, curved)
         gradings_by_edge = tuple(graded.get(k, Uniform()) for k in range(len(topology_edges)))
@@ -135,11 +136,25 @@ class BlockStructure:
         curves : mapping of edge to Curve, optional
             New geometry of some edges, in the topology's direction; it must meet the new vertices. A curved edge that
             is not listed keeps its shape, its ends displaced with its vertices (linear blending).
+
+        Raises
+        ------
+        TopologyError
+            If the vertices have another shape, or an edge does not exist.
+        CurveError
+            If a new curve misses its vertices.
         """
         vertices = np.asarray(vertices, dtype=float)
         if vertices.shape != self.vertices.shape:
             raise TopologyError(f"moved: vertices have shape {vertices.shape}; expected {self.vertices.shape}.")
         replaced = dict(curves or {})
+        for edge in replaced:
+            if not isinstance(edge, int | np.integer) or not 0 <= edge < len(self.topology.edges):
+                raise TopologyError(
+                    f"moved: curves has the key {edge!r}; expected edge numbers from 0 to "
+                    f"{len(self.topology.edges) - 1}. Use topology.edge(first, second)."
+                )
+        _check_ends(self.topology, vertices, replaced)
         shift = vertices - self.vertices
         result: dict[int, Curve] = {}
         for edge, curve in self.curves.items():
@@ -147,6 +162,9 @@ class BlockStructure:
             if edge in replaced:
                 continue
             if shift[first].any() or shift[second].any():
+                if isinstance(curve, NodalCurve):
+                    result[edge] = self._displaced_nodes(edge, curve, shift)
+                    continue
                 x, y = (float(value) for value in shift[first])
                 u, v = (float(value) for value in shift[second])
                 if isinstance(curve, Displaced):  # keep one level of blending, however often the structure moves
@@ -156,6 +174,12 @@ class BlockStructure:
             result[edge] = curve
         result.update(replaced)
         return BlockStructure(self.topology, vertices, result, self.gradings)
+
+    def _displaced_nodes(self, edge: int, curve: NodalCurve, shift: Array) -> NodalCurve:
+        """Nodes of an edge with the displacement of its ends blended by their parameters."""
+        t = node_parameters(self.gradings[edge], curve.count, curve.order)[:, None]
+        first, second = self.topology.edges[edge]
+        return NodalCurve(curve.points + (1.0 - t) * shift[first] + t * shift[second], curve.order)
 
     def restricted(self, groups: Iterable[str]) -> BlockStructure:
         """Return the part made of some block groups; edges keep their direction, names and numbers of elements.
@@ -194,6 +218,7 @@ class BlockStructure:
         return BlockStructure(part, self.vertices[vertices], curves, tuple(self.gradings[k] for k in edges))
 
     def _blocks_of(self, groups: Iterable[str]) -> Index:
+        groups = (groups,) if isinstance(groups, str) else groups
         known = self.topology.block_groups
         members = []
         for name in groups:
@@ -205,8 +230,22 @@ class BlockStructure:
         return np.unique(np.concatenate(members))
 
     def with_edge_group(self, name: str, edges: Sequence[int] | Index) -> BlockStructure:
-        """Return the structure with one more group of named edges."""
-        groups = {**self.topology.edge_groups, name: np.array(edges, dtype=np.int64)}
+        """Return the structure with one more group of named edges, replacing one of that name.
+
+        Raises
+        ------
+        TopologyError
+            If there are no edges, one does not exist, or one is listed twice.
+        """
+        members = np.array(edges)
+        count = len(self.topology.edges)
+        whole = members.ndim == 1 and members.size > 0 and np.issubdtype(members.dtype, np.integer)
+        if not whole or members.min() < 0 or members.max() >= count or len(np.unique(members)) < len(members):
+            raise TopologyError(
+                f"edges.{name}: {members.tolist()}; expected numbers of edges from 0 to {count - 1}, at least one, "
+                "none twice."
+            )
+        groups = {**self.topology.edge_groups, name: members.astype(np.int64)}
         return replace(self, topology=replace(self.topology, edge_groups=groups))
 
     def shared_edges(self, first: Iterable[str], second: Iterable[str]) -> Index:
@@ -222,7 +261,8 @@ def _named(
     place: str,
 ) -> Index:
     """Edges between pairs of vertices, each once."""
-    edges = np.array([topology.edge(vertex(a, place), vertex(b, place))[0] for a, b in pairs], dtype=np.int64)
+    ends = [checks.edge_pair(pair, place) for pair in pairs]
+    edges = np.array([topology.edge(vertex(a, place), vertex(b, place))[0] for a, b in ends], dtype=np.int64)
     if not edges.size:
         raise TopologyError(f"{place}: no edges; expected at least one pair of vertices. Remove the name.")
     found, uses = np.unique(edges, return_counts=True)
@@ -240,8 +280,12 @@ def _directed(
 ) -> dict[int, Thing]:
     """Attach things given by vertex pairs to directed edges, turning those given the other way round."""
     result: dict[int, Thing] = {}
-    for (first, second), thing in pairs.items():
+    for pair, thing in pairs.items():
+        first, second = checks.edge_pair(pair, place)
         edge, forward = topology.edge(vertex(first, place), vertex(second, place))
+        if not callable(thing):
+            error = CurveError if place == "curves" else GradingError
+            raise error(f"{place}: edge {topology.edge_name(edge)} has {thing!r}; expected a function of t in [0, 1].")
         if edge in result:
             raise TopologyError(f"{place}: edge {topology.edge_name(edge)} is given twice. Remove one.")
         result[edge] = thing if forward else reverse(thing)
@@ -249,13 +293,11 @@ def _directed(
 
 
 def _check_ends(topology: BlockTopology, vertices: Array, curves: Mapping[int, Curve]) -> None:
-    names = topology.vertex_names
+    if not curves:
+        return
+    allowed = checks.tolerance(vertices)
     for edge, curve in curves.items():
-        first, second = topology.edges[edge]
-        ends = curve.points[[0, -1]] if isinstance(curve, NodalCurve) else curve(np.array([0.0, 1.0]))
-        checks.check_ends(
-            ends,
-            vertices,
-            {names[first]: int(first), names[second]: int(second)},
-            f"curve on edge {topology.edge_name(edge)}",
-        )
+        ends = topology.edges[edge]
+        found = curve.points[[0, -1]] if isinstance(curve, NodalCurve) else curve(np.array([0.0, 1.0]))
+        names = [topology.vertex_names[v] for v in ends]
+        checks.check_ends(found, vertices[ends], names, allowed, f"curve on edge {topology.edge_name(edge)}")

@@ -16,7 +16,7 @@ from hoblock.errors import CurveError, GradingError, TopologyError
 from hoblock.grading import Cubic, Exponential, Grading, Quadratic, Uniform
 from hoblock.scene import ArcAbout, ArcThrough, CountScene, CurveScene, Formula, GradingScene, MeshScene, Path
 from hoblock.topology import BlockTopology
-from hoblock.topology_checks import check_ends
+from hoblock.topology_checks import check_ends, tolerance
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -97,14 +97,15 @@ def _edge_pairs(paths: tuple[Path, ...], sides: set[frozenset[str]], place: str)
 def _curves(scene: MeshScene, sides: set[frozenset[str]]) -> dict[Ends, Curve]:
     places: dict[frozenset[str], str] = {}
     curves: dict[Ends, Curve] = {}
+    allowed = tolerance(np.array(list(scene.vertices.values()))) if scene.curves else 0.0
     for entry in scene.curves:
         for pair in _edge_pairs(entry.on, sides, entry.place):
             _take(places, pair, entry.place, "curve")
-            curves[pair] = _curve(entry, pair, scene.vertices)
+            curves[pair] = _curve(entry, pair, scene.vertices, allowed)
     return curves
 
 
-def _curve(entry: CurveScene, pair: Pair, vertices: Mapping[str, tuple[float, float]]) -> Curve:
+def _curve(entry: CurveScene, pair: Pair, vertices: Mapping[str, tuple[float, float]], allowed: float) -> Curve:
     ends = np.array([vertices[name] for name in pair])
     with _at(f"{entry.place} on {pair[0]}–{pair[1]}"):
         match entry.shape:
@@ -114,9 +115,7 @@ def _curve(entry: CurveScene, pair: Pair, vertices: Mapping[str, tuple[float, fl
                 return Arc.through(ends[0], np.array(point), ends[1])
             case Formula() as formula:
                 curve = _parametric(formula)
-                positions = np.array(list(vertices.values()))
-                names = list(vertices)
-                check_ends(curve(np.array([0.0, 1.0])), positions, {name: names.index(name) for name in pair}, "curve")
+                check_ends(curve(np.array([0.0, 1.0])), ends, pair, allowed, "curve")
                 return curve
 
 

@@ -12,6 +12,7 @@ from hoblock.errors import HoblockError, SceneError
 from hoblock.generate import generate, raise_if_invalid
 from hoblock.io.mesh_file import write_mesh
 from hoblock.io.scene import load_mesh_scene
+from hoblock.io.toml import repeat_option
 from hoblock.mesh import QuadMesh
 from hoblock.plot import plot_mesh
 from hoblock.quality import equiangular_skewness, jacobian_ratio, minimum_det_jacobian, scaled_jacobian
@@ -33,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         0, or 2 if the scene, its mesh or a file is bad; then one message is on standard error.
     """
-    arguments = _parser().parse_args(argv)
+    arguments = _parser().parse_args(repeat_option(sys.argv[1:] if argv is None else argv))
     try:
         _run(arguments)
     except SceneError as error:
@@ -62,7 +63,7 @@ def _parser() -> argparse.ArgumentParser:
         default=[],
         metavar="KEY=VALUE",
         dest="overrides",
-        help="change a value of the scene, for example --set mesh.elements=2; may be repeated",
+        help="change a value of the scene, for example --set mesh.elements=2; more may follow",
     )
 
     commands.add_parser("check", parents=[common], help="make the mesh and report its size and quality")

@@ -14,7 +14,7 @@ from hoblock.reference import gauss_lobatto, lagrange
 
 Array = NDArray[np.float64]
 
-__all__ = ["Arc", "Curve", "Displaced", "NodalCurve", "Parametric", "Reversed"]
+__all__ = ["Arc", "Curve", "Displaced", "NodalCurve", "Parametric", "Reversed", "reverse"]
 
 
 class Curve(Protocol):
@@ -46,7 +46,8 @@ class Arc:
         c = np.asarray(center, dtype=float)
         a, b = np.asarray(first, dtype=float) - c, np.asarray(second, dtype=float) - c
         ra, rb = float(np.hypot(*a)), float(np.hypot(*b))
-        if min(ra, rb) == 0.0 or abs(ra - rb) > 1e-9 * max(ra, rb):
+        rounding = 8.0 * np.finfo(float).eps * float(np.abs([c, c + a, c + b]).max())  # far from the origin
+        if min(ra, rb) == 0.0 or abs(ra - rb) > 1e-9 * max(ra, rb) + rounding:
             raise CurveError(
                 f"arc about ({c[0]:g}, {c[1]:g}): the end points are {ra:.12g} and {rb:.12g} away from the centre; "
                 "the distances must be equal and positive. Move a vertex or the centre."
@@ -129,11 +130,16 @@ class NodalCurve:
     order: int
 
     def __post_init__(self) -> None:
+        if self.order < 1:
+            raise CurveError(f"nodal curve: order is {self.order}; expected an integer >= 1.")
         points = np.asarray(self.points, dtype=float)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or (len(points) - 1) % self.order:
             raise CurveError(
                 f"nodal curve: points have shape {points.shape}; expected (n*{self.order} + 1, 2) for n elements."
             )
+        if not np.isfinite(points).all():
+            bad = int(np.argmin(np.isfinite(points).all(axis=1)))
+            raise CurveError(f"nodal curve: points[{bad}] is {points[bad].tolist()}; expected finite coordinates.")
         object.__setattr__(self, "points", points)
 
     @property
@@ -159,6 +165,13 @@ class Reversed:
     def __call__(self, t: Array) -> Array:
         """Points at the parameters ``t``."""
         return self.curve(1.0 - np.asarray(t, dtype=float))
+
+
+def reverse(curve: Curve) -> Curve:
+    """Return the curve walked from the other end; a nodal curve stays one."""
+    if isinstance(curve, NodalCurve):
+        return NodalCurve(curve.points[::-1], curve.order)
+    return curve.curve if isinstance(curve, Reversed) else Reversed(curve)
 
 
 @dataclass(frozen=True)

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
-from hoblock.curves import NodalCurve
+from hoblock.curves import Curve, NodalCurve
 from hoblock.errors import CurveError, InvalidMeshError
-from hoblock.grading import Grading, element_corners
+from hoblock.grading import Grading, node_parameters
 from hoblock.mesh import QuadMesh
 from hoblock.numbering import number_nodes
 from hoblock.quality import invalid_elements
 from hoblock.reference import gauss_lobatto
+from hoblock.scene import HIGHEST_ORDER
 from hoblock.topology import BlockTopology
 from hoblock.transfinite import TransfiniteWeights, interior_points
 
@@ -28,11 +29,17 @@ __all__ = ["Layout", "changed_blocks", "generate", "layout", "raise_if_invalid",
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Blocks of equal size: their numbers, node numbers (b, n, m) and blending weights."""
+    """Blocks of equal size: numbers, nodes of bottom, top, left, right, inner nodes (b, n, m), weights."""
 
     blocks: Index
-    nodes: Index
+    sides: tuple[Index, ...]
+    inner: Index
     weights: TransfiniteWeights
+
+    def select(self, some: Index) -> _Batch:
+        """Return the batch of some of its blocks."""
+        sides = tuple(nodes[some] for nodes in self.sides)
+        return _Batch(self.blocks[some], sides, self.inner[some], self.weights.select(some))
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,15 +88,31 @@ def layout(structure: BlockStructure, order: int) -> Layout:
     ----------
     structure : BlockStructure
     order : int
-        Order p ≥ 1 of the elements.
+        Order p of the elements, 1 to 32.
+
+    Raises
+    ------
+    ValueError
+        If the order is none of these.
+    GradingError
+        If a grading is not strictly increasing for the number of elements of its edge.
     """
-    return _layout(structure.topology, structure.gradings, order)
+    if isinstance(order, bool) or not isinstance(order, int | np.integer):
+        raise ValueError(f"order is {order!r}; expected an integer from 1 to {HIGHEST_ORDER}.")
+    if not 1 <= order <= HIGHEST_ORDER:
+        raise ValueError(f"order is {order}; expected an integer >= 1 and <= {HIGHEST_ORDER}.")
+    known = _LAYOUTS.setdefault(structure.topology, {})
+    key = (structure.gradings, int(order))
+    if key not in known:
+        known[key] = _layout(structure.topology, structure.gradings, int(order))
+    return known[key]
 
 
-@lru_cache(maxsize=64)
+# A layout lives as long as its topology: long studies over many structures keep none of them.
+_LAYOUTS: WeakKeyDictionary[BlockTopology, dict[tuple[tuple[Grading, ...], int], Layout]] = WeakKeyDictionary()
+
+
 def _layout(topology: BlockTopology, gradings: tuple[Grading, ...], order: int) -> Layout:
-    if order < 1:
-        raise ValueError(f"order is {order}; expected an integer >= 1.")
     columns = topology.counts[topology.block_edges[:, 0]]
     rows = topology.counts[topology.block_edges[:, 3]]
     cell_starts = np.concatenate(([0], np.cumsum(columns * rows)))
@@ -100,13 +123,9 @@ def _layout(topology: BlockTopology, gradings: tuple[Grading, ...], order: int) 
         for b in range(len(columns))
     ]
     edges = _edge_nodes(topology, block_nodes)
-    parameters = [
-        _edge_parameters(gradings[k], int(topology.counts[k]), order, f"edge {topology.edge_name(k)}")
-        for k in range(len(topology.edges))
-    ]
+    parameters = _edge_parameters(topology, gradings, order)
     vertex_nodes = np.empty(len(topology.vertex_names), dtype=np.int64)
-    for k, (first, second) in enumerate(topology.edges):
-        vertex_nodes[first], vertex_nodes[second] = edges[k][0], edges[k][-1]
+    vertex_nodes[topology.edges] = [(nodes[0], nodes[-1]) for nodes in edges]
     lengths = np.array([len(nodes) for nodes in edges])
     return Layout(
         order,
@@ -161,32 +180,44 @@ def _edge_nodes(topology: BlockTopology, block_nodes: list[Index]) -> list[Index
     return edges
 
 
-def _edge_parameters(grading: Grading, count: int, order: int, place: str) -> Array:
-    """Parameters of an edge's nodes: element corners by the grading, nodes inside an element scaled to it."""
-    corners = element_corners(grading, count, place)
-    inner = (gauss_lobatto(order) + 1.0) / 2.0
-    nodes = corners[:-1, None] + np.diff(corners)[:, None] * inner[:-1]
-    return np.append(nodes.ravel(), 1.0)
+def _edge_parameters(topology: BlockTopology, gradings: tuple[Grading, ...], order: int) -> list[Array]:
+    """Parameters of the nodes of every edge; edges of equal grading and count share them."""
+    known: dict[tuple[Grading, int], Array] = {}
+    for edge, key in enumerate(zip(gradings, topology.counts.tolist(), strict=True)):
+        if key not in known:
+            known[key] = node_parameters(*key, order, f"edge {topology.edge_name(edge)}")
+    return [known[key] for key in zip(gradings, topology.counts.tolist(), strict=True)]
 
 
 def _batches(topology: BlockTopology, block_nodes: list[Index], parameters: list[Array]) -> tuple[_Batch, ...]:
     groups: dict[tuple[int, int, bool], list[int]] = {}
     for block, sides in enumerate(topology.block_edges):
         bottom, right, top, left = (parameters[s] for s in sides)
-        equal = np.array_equal(bottom, top) and np.array_equal(left, right)
+        equal = _same(bottom, top) and _same(left, right)
         groups.setdefault((*block_nodes[block].shape, equal), []).append(block)
     batches = []
     for blocks in groups.values():
         sides = topology.block_edges[blocks]
         bottom, right, top, left = (np.stack([parameters[s] for s in sides[:, k]]) for k in range(4))
         weights = TransfiniteWeights.from_parameters(bottom, top, left, right)
-        batches.append(_Batch(np.array(blocks), np.stack([block_nodes[b] for b in blocks]), weights))
+        nodes = np.stack([block_nodes[b] for b in blocks])
+        outer = tuple(side.copy() for side in (nodes[:, 0], nodes[:, -1], nodes[:, :, 0], nodes[:, :, -1]))
+        inner = np.ascontiguousarray(nodes[:, 1:-1, 1:-1])
+        batches.append(_Batch(np.array(blocks), outer, inner, weights))
     return tuple(batches)
 
 
+def _same(first: Array, second: Array) -> bool:
+    return first is second or np.array_equal(first, second)
+
+
 def _edge_groups(topology: BlockTopology, columns: Index, rows: Index, cell_starts: Index) -> dict[str, Index]:
+    flat = topology.block_edges.ravel()
+    place = np.empty(len(topology.edges), dtype=np.int64)  # first of the block sides on each edge
+    place[flat[::-1]] = np.arange(len(flat))[::-1]
+
     def sides_of(edge: int) -> Index:
-        block, side = (int(index[0]) for index in np.nonzero(topology.block_edges == edge))
+        block, side = divmod(int(place[edge]), 4)
         cells = np.arange(cell_starts[block], cell_starts[block + 1]).reshape(rows[block], columns[block])
         along = (cells[0], cells[:, -1], cells[-1], cells[:, 0])[side]
         return np.stack([along, np.full(len(along), side)], axis=-1)
@@ -245,17 +276,34 @@ def regenerate(
     -------
     QuadMesh
         Not checked; see `raise_if_invalid`.
+
+    Raises
+    ------
+    ValueError
+        If the mesh or ``previous`` belongs to another structure, or ``out`` cannot take the points.
     """
     plan = layout(structure, mesh.order)
     if plan.cells is not mesh.cells and not np.array_equal(plan.cells, mesh.cells):
         raise ValueError("regenerate: the mesh was made from another block structure; use generate.")
     points = np.empty((plan.node_count, 2)) if out is None else out
+    if not isinstance(points, np.ndarray):
+        raise ValueError(f"regenerate: out is a {type(points).__name__}; expected an array.")
     if points.shape != (plan.node_count, 2) or points.dtype != np.float64:
         raise ValueError(
             f"regenerate: out has shape {points.shape}, type {points.dtype}; expected {(plan.node_count, 2)}, float64."
         )
+    if not points.flags.writeable:
+        raise ValueError("regenerate: out is read-only, as the points of meshes are; use np.empty_like(mesh.points).")
     changed = None
     if previous is not None:
+        same = layout(previous, mesh.order)
+        if same is not plan and not (
+            np.array_equal(same.cells, plan.cells) and np.array_equal(same.edge_parameters, plan.edge_parameters)
+        ):
+            raise ValueError(
+                "regenerate: previous has other blocks, counts or gradings than the structure; expected the one that "
+                "the mesh was made from. Leave it out."
+            )
         if np.may_share_memory(points, mesh.points):
             raise ValueError("regenerate: out is the buffer of the mesh that is to be kept; use another.")
         points[:] = mesh.points
@@ -291,20 +339,39 @@ def _fill(plan: Layout, structure: BlockStructure, points: Array, changed: NDArr
         if isinstance(curve, NodalCurve):
             on_edges[start:stop] = _nodal_points(curve, plan, structure.topology, edge)
         else:
-            on_edges[start:stop] = curve(plan.edge_parameters[start:stop])
+            on_edges[start:stop] = _curve_points(curve, plan.edge_parameters[start:stop], structure.topology, edge)
             on_edges[start], on_edges[stop - 1] = structure.vertices[structure.topology.edges[edge]]
     points[plan.edge_nodes] = on_edges
     for batch in plan.batches:
-        nodes, weights = batch.nodes, batch.weights
+        part = batch
         if changed is not None:
             some = np.flatnonzero(changed[batch.blocks])
-            if not some.size:
-                continue
-            if len(some) < len(batch.blocks):
-                nodes, weights = nodes[some], weights.select(some)
-        if nodes.shape[1] > 2 and nodes.shape[2] > 2:
-            sides = (points[nodes[:, 0]], points[nodes[:, -1]], points[nodes[:, :, 0]], points[nodes[:, :, -1]])
-            points[nodes[:, 1:-1, 1:-1]] = interior_points(weights, *sides)
+            part = batch if len(some) == len(batch.blocks) else batch.select(some)
+        if part.inner.size:
+            bottom, top, left, right = (points[nodes] for nodes in part.sides)
+            _scatter(points, part.inner, interior_points(part.weights, bottom, top, left, right))
+
+
+def _scatter(points: Array, nodes: Index, values: Array) -> None:
+    """Set ``points[nodes] = values``; points as complex numbers are written ten times faster than as pairs."""
+    if points.flags.c_contiguous:
+        points.view(np.complex128)[:, 0][nodes.ravel()] = values.view(np.complex128).ravel()
+    else:
+        points[nodes] = values
+
+
+def _curve_points(curve: Curve, t: Array, topology: BlockTopology, edge: int) -> Array:
+    """Nodes of a curved edge, or an error that names the edge."""
+    try:
+        points = np.asarray(curve(t), dtype=float)
+    except CurveError as error:
+        raise CurveError(f"edge {topology.edge_name(edge)}: {error}") from error
+    if points.shape != (len(t), 2):
+        raise CurveError(
+            f"edge {topology.edge_name(edge)}: the curve returned shape {points.shape} for {len(t)} parameters; "
+            f"expected {(len(t), 2)}."
+        )
+    return points
 
 
 def _nodal_points(curve: NodalCurve, plan: Layout, topology: BlockTopology, edge: int) -> Array:

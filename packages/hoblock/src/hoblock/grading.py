@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.errors import GradingError
+from hoblock.reference import gauss_lobatto
 
 Array = NDArray[np.float64]
 
-__all__ = ["Cubic", "Exponential", "Grading", "Quadratic", "Reversed", "Uniform", "element_corners"]
+__all__ = ["Cubic", "Exponential", "Grading", "Quadratic", "Reversed", "Uniform", "element_corners", "node_parameters"]
 
 
 class Grading(Protocol):
@@ -122,3 +123,19 @@ def element_corners(grading: Grading, count: int, place: str = "grading") -> Arr
             f"the next at {corners[k + 1]:g}. Weaken the grading."
         )
     return corners
+
+
+def node_parameters(grading: Grading, count: int, order: int, place: str = "grading") -> Array:
+    """Parameters of an edge's nodes, shape (count order + 1,).
+
+    Element corners by the grading, the GLL nodes inside an element scaled to it.
+
+    Raises
+    ------
+    GradingError
+        As `element_corners`.
+    """
+    corners = element_corners(grading, count, place)
+    inner = (gauss_lobatto(order)[:-1] + 1.0) / 2.0
+    nodes = corners[:-1, None] + np.diff(corners)[:, None] * inner
+    return np.append(nodes.ravel(), 1.0)

@@ -47,11 +47,10 @@ def number_nodes(corners: Index, order: int) -> tuple[Index, int]:
     if order == 1:
         return cells, count
     sides = compressed[:, [[0, 1], [1, 2], [3, 2], [0, 3]]]  # (e, 4, 2), directed
-    pairs, edge = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
-    edge = edge.reshape(-1)
-    ascending = sides.reshape(-1, 2)[:, 0] < sides.reshape(-1, 2)[:, 1]
-    first = np.full(len(pairs), len(edge))
-    np.minimum.at(first, edge, np.arange(len(edge)))
+    start, stop = sides.reshape(-1, 2).T
+    ascending = start < stop
+    keys = np.where(ascending, start * count + stop, stop * count + start)  # one integer a pair sorts faster
+    pairs, first, edge = np.unique(keys, return_index=True, return_inverse=True)
     same = ascending == ascending[first[edge]]  # runs like the first element that has the edge
     inner = np.arange(order - 1)
     numbers = count + edge[:, None] * (order - 1) + np.where(same[:, None], inner, inner[::-1])

@@ -8,7 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.mesh import QuadMesh
-from hoblock.reference import bernstein_from_lagrange, equispaced, gauss_lobatto, tensor_basis, tensor_gradient
+from hoblock.reference import (
+    bernstein_from_legendre,
+    equispaced,
+    gauss_legendre,
+    gauss_lobatto,
+    lagrange,
+    legendre_from_gauss,
+    tensor_basis,
+    tensor_gradient,
+    tensor_quadrature,
+)
 
 Array = NDArray[np.float64]
 
@@ -23,6 +33,9 @@ __all__ = [
     "minimum_det_jacobian",
     "scaled_jacobian",
 ]
+
+_BERNSTEIN_DEGREE = 15
+"""Highest degree of the Bernstein coefficients that bound det J; elements up to order 8 need no more."""
 
 
 def _square(nodes: Array) -> Array:
@@ -101,12 +114,29 @@ def equiangular_skewness(mesh: QuadMesh) -> Array:
     return np.asarray(np.abs(angle / (np.pi / 2.0) - 1.0).max(axis=1))
 
 
-def _bernstein(mesh: QuadMesh) -> Array:
-    """Bernstein coefficients (e, 2p, 2p) of det J, a polynomial of degree 2p - 1 in each direction (η first)."""
-    degree = 2 * mesh.order - 1
-    det_J = det_jacobian(mesh, _square(equispaced(degree))).reshape(-1, degree + 1, degree + 1)
-    B = bernstein_from_lagrange(degree)
-    return np.asarray(B @ det_J @ B.T)
+def _gauss_values(mesh: QuadMesh) -> Array:
+    """det J, a polynomial of degree 2p - 1 in each direction, at the 2p Gauss points of each (e, 2p, 2p; η first)."""
+    count = 2 * mesh.order
+    return det_jacobian(mesh, tensor_quadrature(count)[0]).reshape(-1, count, count)
+
+
+def _extremes(values: Array) -> tuple[Array, Array]:
+    """Lower and upper bounds of polynomials given at Gauss points, each of shape (e,).
+
+    Bernstein coefficients of a high degree drown in round-off, so only the Legendre modes up to `_BERNSTEIN_DEGREE`
+    pass through them; a higher mode is at most its coefficient.
+    """
+    count = values.shape[1]
+    degree = min(count - 1, _BERNSTEIN_DEGREE)
+    B = bernstein_from_legendre(degree) @ legendre_from_gauss(count)[: degree + 1]
+    coefficients = B @ values @ B.T
+    lower, upper = coefficients.min(axis=(1, 2)), coefficients.max(axis=(1, 2))
+    if degree == count - 1:
+        return lower, upper
+    modes = np.abs(legendre_from_gauss(count) @ values @ legendre_from_gauss(count).T)
+    modes[:, : degree + 1, : degree + 1] = 0.0
+    rest = modes.sum(axis=(1, 2))
+    return lower - rest, upper + rest
 
 
 def det_jacobian_bounds(mesh: QuadMesh, subdivisions: int = 0) -> tuple[Array, Array]:
@@ -126,42 +156,39 @@ def det_jacobian_bounds(mesh: QuadMesh, subdivisions: int = 0) -> tuple[Array, A
     ----------
     Johnen, Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372, doi:10.1016/j.jcp.2012.08.051.
     """
-    coefficients = _bernstein(mesh)
-    lower, upper = coefficients.min(axis=(1, 2)), coefficients.max(axis=(1, 2))
+    values = _gauss_values(mesh)
+    lower, upper = _extremes(values)
     open_elements = np.flatnonzero(lower <= 0.0)
-    pieces, owner = coefficients[open_elements], open_elements
-    settled = np.full(len(lower), np.inf)  # smallest positive bound among the pieces that need no further cut
-    for _ in range(subdivisions):
-        if not owner.size:
-            break
-        pieces, owner = _subdivide(pieces), np.repeat(owner, 4)
-        low = pieces.min(axis=(1, 2))
-        bound = settled.copy()
-        np.minimum.at(bound, owner, low)
-        touched = np.unique(owner)
-        lower[touched] = bound[touched]
-        done = low > 0.0
-        np.minimum.at(settled, owner[done], low[done])
-        pieces, owner = pieces[~done], owner[~done]
+    if subdivisions and open_elements.size:
+        finer = _sharpened(values[open_elements], subdivisions)
+        lower[open_elements] = np.maximum(lower[open_elements], finer)
     return lower, upper
 
 
-def _subdivide(coefficients: Array) -> Array:
-    """Cut polynomials in four by de Casteljau's algorithm; children of one parent are adjacent."""
+def _sharpened(pieces: Array, subdivisions: int) -> Array:
+    """Lower bounds of polynomials given at Gauss points, by cutting the pieces whose bound is not positive in four."""
+    owner = np.arange(len(pieces))
+    bound = np.full(len(pieces), -np.inf)
+    settled = np.full(len(pieces), np.inf)  # smallest positive bound among the pieces that need no further cut
+    for _ in range(subdivisions):
+        pieces, owner = _subdivide(pieces), np.repeat(owner, 4)
+        low, _ = _extremes(pieces)
+        bound = settled.copy()
+        np.minimum.at(bound, owner, low)
+        done = low > 0.0
+        np.minimum.at(settled, owner[done], low[done])
+        pieces, owner = pieces[~done], owner[~done]
+        if not owner.size:
+            break
+    return bound
 
-    def halves(c: Array) -> tuple[Array, Array]:
-        left, right = [c[:, 0]], [c[:, -1]]
-        while c.shape[1] > 1:
-            c = 0.5 * (c[:, :-1] + c[:, 1:])
-            left.append(c[:, 0])
-            right.append(c[:, -1])
-        return np.stack(left, axis=1), np.stack(right[::-1], axis=1)
 
-    quarters = []
-    for part in halves(coefficients):
-        for piece in halves(part.transpose(0, 2, 1)):
-            quarters.append(piece.transpose(0, 2, 1))
-    return np.stack(quarters, axis=1).reshape(-1, *coefficients.shape[1:])
+def _subdivide(values: Array) -> Array:
+    """Cut polynomials given at Gauss points in four; children of one parent are adjacent."""
+    points, _ = gauss_legendre(values.shape[1])
+    halves = [lagrange(points, 0.5 * (points + end)) for end in (-1.0, 1.0)]
+    quarters = [first @ values @ second.T for first in halves for second in halves]
+    return np.stack(quarters, axis=1).reshape(-1, *values.shape[1:])
 
 
 @dataclass(frozen=True)
@@ -182,17 +209,22 @@ def invalid_elements(mesh: QuadMesh, subdivisions: int = 6) -> list[BadElement]:
 
     An element counts as valid when the Bernstein bound proves det J > 0, after up to ``subdivisions`` cuts.
     """
-    lower, _ = det_jacobian_bounds(mesh)
-    if (lower > 0.0).all():
-        return []
-    lower, _ = det_jacobian_bounds(mesh, subdivisions)
+    values = _gauss_values(mesh)
+    lower, _ = _extremes(values)
     elements = np.flatnonzero(~(lower > 0.0))
     if not elements.size:
         return []
     grid = np.concatenate([_dense_grid(mesh.order), _square(gauss_lobatto(mesh.order))])
     part = QuadMesh(mesh.points, mesh.cells[elements].copy(), mesh.order, {}, {})
-    J = jacobian(part, grid)
-    det_J = _determinant(J)
+    det_J = det_jacobian(part, grid)
+    certain = np.zeros(len(elements), dtype=bool)
+    undecided = np.flatnonzero(det_J.min(axis=1) > 0.0)  # the others are bad already; cutting them would be endless
+    if undecided.size:
+        certain[undecided] = _sharpened(values[elements[undecided]], subdivisions) > 0.0
+    if certain.all():
+        return []
+    elements, det_J = elements[~certain], det_J[~certain]
+    part = QuadMesh(mesh.points, mesh.cells[elements].copy(), mesh.order, {}, {})
     at = det_J.argmin(axis=1)
     places = (tensor_basis(gauss_lobatto(mesh.order), grid[at])[:, None, :] @ part.coordinates)[:, 0]
     found = [

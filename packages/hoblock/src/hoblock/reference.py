@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from math import comb
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -11,13 +12,14 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 __all__ = [
-    "bernstein_from_lagrange",
+    "bernstein_from_legendre",
     "differentiation_matrix",
     "equispaced",
     "gauss_legendre",
     "gauss_lobatto",
     "lagrange",
     "lagrange_derivative",
+    "legendre_from_gauss",
     "tensor_basis",
     "tensor_gradient",
     "tensor_quadrature",
@@ -120,25 +122,42 @@ def lagrange_derivative(nodes: Array, x: Array) -> Array:
 
 
 @cache
-def bernstein_from_lagrange(order: int) -> Array:
-    """Matrix that turns values at equispaced points into Bernstein coefficients of the same order.
+def legendre_from_gauss(count: int) -> Array:
+    """Matrix that turns values at ``count`` Gauss points into Legendre coefficients, shape (count, count).
+
+    Exact for polynomials of degree ``count - 1``, and well conditioned for every degree.
+    """
+    points, weights = gauss_legendre(count)
+    degrees = np.arange(count)
+    return _frozen(np.asarray((2 * degrees[:, None] + 1) / 2 * weights * legendre.legvander(points, count - 1).T))
+
+
+@cache
+def bernstein_from_legendre(order: int) -> Array:
+    """Matrix that turns Legendre into Bernstein coefficients of the same order on [-1, 1].
+
+    The entries are those of exact arithmetic; they grow as 2^order, and so does the round-off of the coefficients.
 
     Parameters
     ----------
     order : int
-        Order m of the polynomial on [-1, 1].
+        Order m of the polynomial.
 
     Returns
     -------
     ndarray, shape (m + 1, m + 1)
+
+    References
+    ----------
+    Farouki, J. Comput. Appl. Math. 119 (2000) 145–160, Eq. (20), doi:10.1016/S0377-0427(00)00376-9.
     """
-    t = np.linspace(0.0, 1.0, order + 1)
     columns = np.empty((order + 1, order + 1))
-    binomial = 1.0
-    for k in range(order + 1):
-        columns[:, k] = binomial * t**k * (1.0 - t) ** (order - k)
-        binomial = binomial * (order - k) / (k + 1)
-    return _frozen(np.asarray(np.linalg.inv(columns), dtype=float))
+    for j in range(order + 1):
+        for k in range(order + 1):
+            terms = range(max(0, j + k - order), min(j, k) + 1)
+            total = sum((-1) ** (k + i) * comb(k, i) ** 2 * comb(order - k, j - i) for i in terms)
+            columns[j, k] = total / comb(order, j)
+    return _frozen(columns)
 
 
 def tensor_basis(nodes: Array, points: Array) -> Array:

@@ -48,6 +48,7 @@ class BlockTopology:
     block_groups: Mapping[str, Index]
     edge_groups: Mapping[str, Index]
     _edge_of: Mapping[tuple[int, int], int] = field(init=False, repr=False)
+    _vertex_of: Mapping[str, int] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.quads, self.edges, self.block_edges, self.chains, self.counts):
@@ -55,8 +56,9 @@ class BlockTopology:
         for groups in (self.block_groups, self.edge_groups):
             for array in groups.values():
                 array.setflags(write=False)
-        lookup = {(int(a), int(b)): k for k, (a, b) in enumerate(self.edges)}
+        lookup = {(a, b): k for k, (a, b) in enumerate(self.edges.tolist())}
         object.__setattr__(self, "_edge_of", MappingProxyType(lookup))
+        object.__setattr__(self, "_vertex_of", MappingProxyType({name: k for k, name in enumerate(self.vertex_names)}))
 
     @property
     def blocks_per_edge(self) -> Index:
@@ -76,10 +78,9 @@ class BlockTopology:
         TopologyError
             If there is no such vertex.
         """
-        try:
-            return self.vertex_names.index(name)
-        except ValueError:
-            raise TopologyError(f"no vertex named '{name}'{did_you_mean(name, self.vertex_names)}") from None
+        if name not in self._vertex_of:
+            raise TopologyError(f"no vertex named '{name}'{did_you_mean(name, self.vertex_names)}")
+        return self._vertex_of[name]
 
     def find_edge(self, first: int, second: int) -> int | None:
         """Return the edge between two vertices, in either direction, or None."""

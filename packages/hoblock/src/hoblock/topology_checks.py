@@ -13,14 +13,28 @@ from hoblock.topology import BlockTopology
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["chain_counts", "check_counter_clockwise", "check_ends", "check_geometry", "quad_table", "vertex_table"]
+__all__ = [
+    "chain_counts",
+    "check_counter_clockwise",
+    "check_ends",
+    "check_geometry",
+    "edge_pair",
+    "element_count",
+    "quad_table",
+    "tolerance",
+    "vertex_table",
+]
 
 
 def vertex_table(vertices: Mapping[str, Sequence[float]] | Array) -> tuple[tuple[str, ...], Array]:
-    """Names and positions (n, 2); vertices must be finite and distinct."""
+    """Names and positions (n, 2); vertices must be pairs of finite numbers, and distinct."""
     if isinstance(vertices, Mapping):
         names = tuple(str(name) for name in vertices)
-        positions = np.array([tuple(map(float, point)) for point in vertices.values()], dtype=float).reshape(-1, 2)
+        if len(set(names)) < len(names):
+            twice = next(name for k, name in enumerate(names) if name in names[:k])
+            raise TopologyError(f"vertices: two are named '{twice}' once names are texts. Rename one.")
+        positions = np.array([_pair(point, name) for name, point in zip(names, vertices.values(), strict=True)])
+        positions = positions.reshape(-1, 2)
     else:
         positions = np.array(vertices, dtype=float)
         if positions.ndim != 2 or positions.shape[1] != 2:
@@ -30,6 +44,27 @@ def vertex_table(vertices: Mapping[str, Sequence[float]] | Array) -> tuple[tuple
         raise TopologyError(f"vertex '{names[int(np.argmin(np.isfinite(positions).all(axis=1)))]}': not finite.")
     _check_distinct(names, positions)
     return names, positions
+
+
+def _pair(point: Sequence[float], name: str) -> tuple[float, float]:
+    try:
+        x, y = (float(value) for value in point)
+    except (TypeError, ValueError):
+        raise TopologyError(f"vertex '{name}': {point!r}; expected two numbers (x, y).") from None
+    return x, y
+
+
+def edge_pair(pair: object, place: str) -> tuple[str | int, str | int]:
+    """Return an edge given by its two vertices, or raise."""
+    if isinstance(pair, str) or not isinstance(pair, Sequence | np.ndarray) or len(pair) != 2:
+        raise TopologyError(f"{place}: {pair!r}; expected a pair of vertices. Name each edge of a path by itself.")
+    return pair[0], pair[1]
+
+
+def tolerance(vertices: Array) -> float:
+    """How far points that ought to coincide may be apart: 1e-9 of the structure's size, more if far from the origin."""
+    size, reach = float(np.ptp(vertices, axis=0).max()), float(np.abs(vertices).max())
+    return 1e-9 * size + 16.0 * float(np.finfo(float).eps) * reach
 
 
 def _check_distinct(names: Sequence[str], positions: Array) -> None:
@@ -77,12 +112,18 @@ def quad_table(
 def check_counter_clockwise(quads: Index, groups: Mapping[str, Index], names: Sequence[str], vertices: Array) -> None:
     """Blocks must have positive area; the first thing to ask, since orientation relies on it."""
     corners = vertices[quads]
-    ahead = np.roll(corners, -1, axis=1)
-    area = 0.5 * np.sum(corners[..., 0] * ahead[..., 1] - corners[..., 1] * ahead[..., 0], axis=1)
+    first, second = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]  # differences: safe far from 0
+    area = 0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    extent = np.hypot(*first.T) * np.hypot(*second.T)
     for name, members in groups.items():
         for k in np.flatnonzero(area[members] <= 0.0):
             block = members[k]
             listed = ", ".join(names[v] for v in quads[block])
+            if -area[block] <= 1e-12 * extent[block]:
+                raise TopologyError(
+                    f"blocks.{name}[{k}] ({listed}) has no area between the chords of its edges: its vertices cross "
+                    "over or lie on a line. List them one after the other round the block, or split it."
+                )
             raise TopologyError(
                 f"blocks.{name}[{k}] ({listed}) is clockwise or inverted (signed area {area[block]:.3g}). "
                 "List its vertices counter-clockwise."
@@ -119,36 +160,59 @@ def check_geometry(topology: BlockTopology, vertices: Array, curved: frozenset[i
 def _check_conforming(topology: BlockTopology, vertices: Array, curved: frozenset[int]) -> None:
     """No boundary vertex may lie inside a straight boundary edge."""
     outer = np.setdiff1d(np.flatnonzero(topology.blocks_per_edge == 1), list(curved))
-    candidates = topology.boundary_vertices
-    first, second = vertices[topology.edges[outer, 0]], vertices[topology.edges[outer, 1]]
-    chord = second - first
-    offset = vertices[candidates][:, None] - first
+    edges, candidates = _near(topology.boundary_vertices, topology.edges[outer], vertices)
+    first, second = vertices[topology.edges[outer[edges], 0]], vertices[topology.edges[outer[edges], 1]]
+    chord, offset = second - first, vertices[candidates] - first
     squared = np.sum(chord * chord, axis=1)
-    along = np.sum(offset * chord, axis=2) / squared
-    off = np.abs(offset[..., 0] * chord[:, 1] - offset[..., 1] * chord[:, 0]) / squared
-    inside = (along > 1e-9) & (along < 1.0 - 1e-9) & (off < 1e-9)
+    along = np.sum(offset * chord, axis=1) / squared
+    off = np.abs(offset[:, 0] * chord[:, 1] - offset[:, 1] * chord[:, 0]) / squared
+    close = 1e-9 + 4.0 * np.finfo(float).eps * np.abs(vertices).max(initial=0.0) / np.sqrt(squared)
+    inside = (along > close) & (along < 1.0 - close) & (off < close)
     if inside.any():
-        v, k = (int(index[0]) for index in np.nonzero(inside))
+        k = int(np.argmax(inside))
+        name, edge = topology.vertex_names[candidates[k]], topology.edge_name(int(outer[edges[k]]))
         raise TopologyError(
-            f"vertex '{topology.vertex_names[candidates[v]]}' lies on edge {topology.edge_name(int(outer[k]))}: the "
-            "blocks do not conform. Split the block at that edge."
+            f"vertex '{name}' lies on edge {edge}: the blocks do not conform. Split the block at that edge."
         )
 
 
-def check_ends(ends: Array, vertices: Array, names: Mapping[str, int], place: str) -> None:
-    """The ends (2, 2) of a curve must meet its first and second vertex, given as name: index.
+def _near(candidates: Index, edges: Index, vertices: Array) -> tuple[Index, Index]:
+    """Pairs (edge, vertex) of edges and candidates between their ends along the longer axis of the structure.
 
-    The tolerance is 1e-9 times the size of the structure.
+    Sorting keeps the number of pairs near that of the edges, where all pairs of a long channel would fill the memory.
     """
-    size = float(np.ptp(vertices, axis=0).max())
-    for end, (name, vertex) in zip(ends, names.items(), strict=True):
-        gap = float(np.hypot(*(end - vertices[vertex])))
-        if not gap <= 1e-9 * size:
+    axis = int(np.argmax(np.ptp(vertices, axis=0)))
+    ordered = candidates[np.argsort(vertices[candidates, axis], kind="stable")]
+    place = vertices[ordered, axis]
+    low, high = np.sort(vertices[edges, axis], axis=1).T
+    margin = 1e-9 * (np.ptp(place) if len(place) else 0.0)
+    start, stop = np.searchsorted(place, low - margin), np.searchsorted(place, high + margin, side="right")
+    count = stop - start
+    pair = np.repeat(np.arange(len(edges)), count)
+    within = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    return pair, ordered[start[pair] + within]
+
+
+def check_ends(ends: Array, corners: Array, names: Sequence[str], allowed: float, place: str) -> None:
+    """The ends (2, 2) of a curve must be within ``allowed`` of its first and second vertex (2, 2)."""
+    if np.shape(ends) != (2, 2):
+        raise CurveError(f"{place}: returned shape {np.shape(ends)} for 2 parameters; expected (2, 2), a point a row.")
+    for end, corner, name in zip(ends, corners, names, strict=True):
+        gap = float(np.hypot(*(end - corner)))
+        if not gap <= allowed:
             raise CurveError(
                 f"{place}: end point ({end[0]:g}, {end[1]:g}) is {gap:.2g} away from vertex '{name}' at "
-                f"({vertices[vertex][0]:g}, {vertices[vertex][1]:g}); must coincide within {1e-9 * size:.1g}. "
-                "Check the curve's direction."
+                f"({corner[0]:g}, {corner[1]:g}); must coincide within {allowed:.1g}. Check the curve's direction."
             )
+
+
+def element_count(count: object, place: str) -> int:
+    """Return a number of elements as an int, or raise."""
+    if isinstance(count, bool) or not isinstance(count, int | np.integer):
+        raise TopologyError(f"{place}: {count!r} elements; expected an integer >= 1.")
+    if count < 1:
+        raise TopologyError(f"{place}: {count} elements; expected at least 1.")
+    return int(count)
 
 
 def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], default: int) -> Index:
@@ -156,8 +220,7 @@ def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], 
     per_chain: dict[int, tuple[int, int]] = {}
     for (first, second), count in asked.items():
         edge, _ = topology.edge(first, second)
-        if count < 1:
-            raise TopologyError(f"edge {topology.edge_name(edge)}: {count} elements; expected at least 1.")
+        count = element_count(count, f"edge {topology.edge_name(edge)}")
         chain = int(topology.chains[edge])
         if per_chain.get(chain, (count, edge))[0] != count:
             other_count, other = per_chain[chain]
@@ -168,6 +231,5 @@ def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], 
                 "Change one of them, or remove it."
             )
         per_chain[chain] = (count, edge)
-    if default < 1:
-        raise TopologyError(f"default number of elements is {default}; expected at least 1.")
+    default = element_count(default, "default number of elements")
     return np.array([per_chain.get(int(chain), (default, 0))[0] for chain in topology.chains], dtype=np.int64)

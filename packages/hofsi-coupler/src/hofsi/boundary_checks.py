@@ -120,21 +120,40 @@ def check_motions(case: Case, owners: EdgeOwners) -> None:
 
 
 def check_forces(case: Case, owners: EdgeOwners) -> None:
-    """Check that forces are asked for on boundaries of the fluid.
+    """Check that forces are asked for on boundaries, each of the fluid or of solids but not of both.
 
     Raises
     ------
     CaseError
-        A force without a fluid, or on an edge that is not at the fluid's boundary.
+        A force on an edge that is not at a boundary, or on edges of the fluid and dry edges of solids.
     """
     for quantity in case.quantities:
         if not isinstance(quantity, Force):
             continue
-        if case.fluid is None:
-            raise CaseError("a force of the fluid, and there is no [fluid]. Remove the quantity", quantity.place)
+        found: dict[str, str] = {}
         for name, edge in edges_of(case.mesh, quantity.on):
-            if not owners.is_wet(edge):
-                _expect_outer(owners, FLUID, name, edge, quantity.place)
+            found.setdefault(_body_at(case, owners, quantity, name, edge), _edge(name, edge))
+        if len(found) == 2:
+            raise CaseError(
+                f"{found['fluid']} is at the fluid and {found['solid']} at a solid alone; expected one kind: there the "
+                "force is that of the fluid, here that of the solid. Make two quantities of it",
+                f"{quantity.place}.on",
+            )
+
+
+def _body_at(case: Case, owners: EdgeOwners, quantity: Force, name: str, edge: Edge) -> str:
+    """The body whose force on an edge is meant: "fluid", also where it touches a solid, or "solid"."""
+    labels = owners.of[edge]
+    if owners.is_wet(edge) or labels == (FLUID,):
+        return "fluid"
+    if len(labels) == 1:
+        return "solid"
+    bodies = [body for body, there in (("the fluid", case.fluid), ("a solid", case.solids)) if there]
+    raise CaseError(
+        f"{_edge(name, edge)} {owners.where(edge)}; expected an edge at the boundary of {' or '.join(bodies)}. "
+        f"Correct the paths of {name!r} in [mesh.edges], or use another name",
+        f"{quantity.place}.on",
+    )
 
 
 def _expect_outer(owners: EdgeOwners, label: str, name: str, edge: Edge, place: str) -> None:

@@ -31,6 +31,8 @@ Index = NDArray[np.int64]
 
 __all__ = ["FluidPart", "Problem", "SolidPart", "build"]
 
+_SAME_PLACE = 1e-9  # of the mesh's extent: motions that differ by more where they meet contradict each other
+
 
 @dataclass(frozen=True, eq=False)
 class FluidPart:
@@ -118,7 +120,7 @@ def _solid_alone(asked: case.Case, structure: BlockStructure, blocks: list[str],
 
     part = structure.restricted(blocks)
     mesh = _mesh(part, asked.mesh.order)
-    solver = SolidSolver(mesh, asked.solids, asked.nonlinear)
+    solver = SolidSolver(mesh, asked.solids, asked.nonlinear, asked.linear)
     return Problem(asked, SolidMarch(solver, clock), None, SolidPart(part, mesh, solver), None, clock)
 
 
@@ -127,18 +129,19 @@ def _fluid_alone(asked: case.Case, structure: BlockStructure, mesh: QuadMesh, cl
 
     assert asked.fluid is not None
     check_order(asked)
-    solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, np.zeros(0, dtype=np.int64))
-    motion = displacement = None
+    motion = displacement = moving = None
     if asked.motions:
         from hofsi.motion import MeshMotion
 
         driven, displacement = _driven(asked, structure, mesh, ())
         motion = MeshMotion(structure, mesh, _mover(asked.mover, structure, driven.vertices), driven)
-        reference = motion.reference
+        reference, moving = motion.reference, driven.nodes
     else:
         from hofsi.motion import MeshState
 
         reference = MeshState(structure, mesh, float(det_jacobian_bounds(mesh)[0].min()))
+    nobody = np.zeros(0, dtype=np.int64)
+    solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, nobody, moving)
     march = FluidMarch(solver, reference, motion, displacement, clock)
     return Problem(asked, march, FluidPart(structure, mesh, solver), None, None, clock)
 
@@ -157,8 +160,8 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     solid_mesh = _mesh(solid, order)
     driven, prescribed = _driven(asked, fluid, mesh, interface.fluid_edges)
     motion = MeshMotion(fluid, mesh, _mover(asked.mover, fluid, driven.vertices), driven)
-    fluid_solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, interface.fluid)
-    solid_solver = SolidSolver(solid_mesh, asked.solids, asked.nonlinear)
+    fluid_solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, interface.fluid, driven.nodes)
+    solid_solver = SolidSolver(solid_mesh, asked.solids, asked.nonlinear, asked.linear)
     march = CoupledMarch(
         fluid_solver, solid_solver, interface, motion, prescribed, asked.coupling, _accelerator(asked.coupling), clock
     )
@@ -180,11 +183,22 @@ def _driven(
         nodes = np.unique(np.concatenate([mesh.edge_nodes(name) for name in motion.on]))
         terms.append((np.searchsorted(driven.nodes, nodes), *mesh.points[nodes].T, motion))
 
+    extent = float(np.ptp(mesh.points, axis=0).max())
+
     def displacement(time: float) -> Array:
-        result = np.zeros((len(driven.nodes), 2))
+        result, given = np.zeros((len(driven.nodes), 2)), np.zeros(len(driven.nodes), dtype=bool)
         for rows, x, y, motion in terms:
-            for a, component in enumerate((motion.x, motion.y)):
-                result[rows, a] = component.evaluate(x=x, y=y, t=time)
+            values = np.stack([component.evaluate(x=x, y=y, t=time) for component in (motion.x, motion.y)], axis=-1)
+            apart = np.where(given[rows], np.abs(values - result[rows]).max(axis=1), 0.0)
+            if apart.max(initial=0.0) > _SAME_PLACE * extent:
+                k = int(np.argmax(apart))
+                here, before = (f"({v[0]:.6g}, {v[1]:.6g})" for v in (values[k], result[rows[k]]))
+                raise CaseError(
+                    f"at ({x[k]:.6g}, {y[k]:.6g}) and t = {time:g} it gives the displacement {here}, and a motion "
+                    f"before it {before}; expected the same where their edges meet. Correct one of them",
+                    motion.place,
+                )
+            result[rows], given[rows] = values, True
         return result
 
     return driven, displacement

@@ -477,13 +477,13 @@ class Probe:
 
 @dataclass(frozen=True)
 class Force:
-    """The force of the fluid on named edges, times a factor.
+    """The force of the fluid on named edges, or that of solids on their surroundings at dry ones, times a factor.
 
     Attributes
     ----------
     name : str
     on : tuple of str
-        Names of the mesh's edges, outer ones of the fluid or shared with a solid.
+        Names of the mesh's edges: outer ones of the fluid or shared with a solid, or outer ones of solids.
     component : {"x", "y"}
     factor : float
     place : str

@@ -12,6 +12,7 @@ from hofsi.case import (
     DoNothing,
     Fluid,
     FluidCondition,
+    Force,
     Pressure,
     Probe,
     Roller,
@@ -111,9 +112,12 @@ def _check_solid_names(case: Case) -> None:
 
 def _check_quantities(case: Case) -> None:
     for quantity in case.quantities:
+        if isinstance(quantity, Force):
+            continue  # of the fluid or of solids: where its edges are
         needs_solid = isinstance(quantity, Probe) and quantity.of == "solid"
         if needs_solid and not case.solids:
-            raise CaseError("a probe of the solid, and there is no [[solid]]. Remove the quantity", quantity.place)
+            hint = 'Remove the quantity, or set of = "fluid"'
+            raise CaseError(f"a probe of the solid, and there is no [[solid]]. {hint}", quantity.place)
         if not needs_solid and case.fluid is None:
             of_solids_too = isinstance(quantity, Probe) and quantity.field == "velocity"
             hint = 'Set of = "solid"' if of_solids_too else "Remove the quantity"

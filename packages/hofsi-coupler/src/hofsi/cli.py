@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hoblock.errors import HoblockError, SceneError
+from hoblock.io.toml import repeat_option
 from hofsi.errors import HofsiError
 from hofsi.io.scene import load_case
 from hofsi.io.summary import read_summary
@@ -33,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0, or 2 for bad input, 3 for a run that did not converge, 130 for one that was interrupted.
     """
-    options = _parser().parse_args(arguments)
+    options = _parser().parse_args(repeat_option(sys.argv[1:] if arguments is None else arguments))
     try:
         return _check(options) if options.command == "check" else _run(options)
     except (HoblockError, HofsiError) as error:
@@ -66,7 +67,7 @@ def _parser() -> argparse.ArgumentParser:
             action="append",
             default=[],
             dest="changes",
-            help="change a key of the scene, for example mesh.order=6; may be repeated",
+            help="change a key of the scene, for example mesh.order=6; more may follow",
         )
     run.add_argument("-o", "--output", metavar="DIR", required=True, help="directory for the results")
     run.add_argument("--quiet", action="store_true", help="show nothing but errors")

@@ -22,6 +22,8 @@ class Counts:
     factorisations, solves : int
     iterations : int
         Nonlinear iterations.
+    continuation_steps : int
+        Easier problems, and the one asked for, that were tried where Newton's method alone had failed.
     """
 
     geometries: int = 0
@@ -30,3 +32,4 @@ class Counts:
     factorisations: int = 0
     solves: int = 0
     iterations: int = 0
+    continuation_steps: int = 0

@@ -77,7 +77,7 @@ class MeshState:
     min_det_J : float
         Certified lower bound of det J over all elements.
     regenerated : int
-        Blocks that were generated anew since the state it was made from.
+        Blocks that were generated anew since the state it was made from, counted once for every mesh made on the way.
     """
 
     structure: BlockStructure

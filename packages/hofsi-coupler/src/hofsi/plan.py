@@ -191,11 +191,12 @@ def _solid(case: Case, meshes: _Meshes) -> Iterator[Item]:
         return
     structure, mesh = meshes.solid
     unknowns = 2 * len(mesh.points)
+    solver = {"direct": "sparse LU", "amg": f"algebraic multigrid to a relative residual of {case.linear.tolerance:g}"}
     yield Item("solid mesh", _mesh(structure, mesh))
     yield Item(
         "solid",
         f"{unknowns} unknowns of displacement, given ones included; "
-        f"{unknowns - 2 * _inner(mesh, mesh.order)} after static condensation, sparse LU",
+        f"{unknowns - 2 * _inner(mesh, mesh.order)} after static condensation, {solver[case.linear.solver]}",
     )
     for solid in case.solids:
         yield Item(f"solid {solid.name!r}", _material(solid, case.fluid))
@@ -300,8 +301,8 @@ def _without_iteration(case: Case) -> Iterator[Item]:
         elif not _iterates(case, fluid):
             meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
             yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}")
-        if case.linear.solver == "direct":
-            yield Item("algebraic multigrid", 'linear.solver = "direct"')
+    if case.linear.solver == "direct":
+        yield Item("algebraic multigrid", 'linear.solver = "direct"')
     if case.solids and all(solid.model == "linear" for solid in case.solids):
         yield Item("solid's Newton iteration", f"linear: factorised {_once(case)}")
     if isinstance(case.time, Steady):
@@ -337,9 +338,7 @@ def _unused_tables(case: Case) -> Iterator[Item]:
         needless["coupling"] = "there is no " + ("solid" if case.fluid else "fluid")
     if not _moves(case):
         needless["mover"] = "no boundary of the fluid moves"
-    if case.fluid is None:
-        needless["linear"] = "a solid is always solved by sparse LU"
-    elif not case.solids and not _iterates(case, case.fluid):
+    if case.fluid and not case.solids and not _iterates(case, case.fluid):
         needless["nonlinear"] = "the equations are linear"
     for name, reason in needless.items():
         if name in case.tables:

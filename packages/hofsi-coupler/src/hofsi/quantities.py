@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -15,9 +16,10 @@ from hofsi.build import FluidPart, Problem, SolidPart
 from hofsi.errors import CaseError
 from hofsi.fem.element import boundary_first
 from hofsi.fem.locate import Location, find, interpolation_weights, locate, location_of_node
-from hofsi.records import StepRecord
+from hofsi.records import State, StepRecord
 
 if TYPE_CHECKING:
+    from hofsi.coupling.interface import Interface
     from hofsi.motion import MeshState
     from hofsi.solvers.fluid import FluidState
     from hofsi.solvers.fluid_forces import BoundaryForce
@@ -54,7 +56,7 @@ def evaluators(problem: Problem) -> dict[str, Evaluator]:
     Raises
     ------
     CaseError
-        If a point is outside the mesh, a force is asked for where no fluid is, or a name is that of another column.
+        If a point is outside the mesh, a force is asked for where no boundary is, or a name is that of another column.
     """
     for quantity in problem.case.quantities:
         if quantity.name in _COLUMNS:
@@ -106,19 +108,30 @@ def _difference(problem: Problem, difference: case.PressureDifference) -> Evalua
 
 
 def _force(problem: Problem, force: case.Force) -> _Vector:
-    """Force of the fluid on edges; kept for the last state, because drag and lift ask for the same one."""
-    fluid = _fluid_of(problem, force.place)
-    boundary = _boundary_force(fluid, force)
-    last: tuple[FluidState, Array] | None = None
+    """Force on edges; kept for the last state, because drag and lift ask for the same one."""
+    fluid, solid = problem.fluid, problem.solid
+    if solid is not None and (fluid is None or _is_dry(fluid, solid, force)):
+        return _kept(_solid_force(problem, solid, force))
+    boundary = _boundary_force(_fluid_of(problem, force.place), force)
+    return _kept(lambda record: boundary.evaluate(_fluid_state(record)))
 
-    def evaluate(record: StepRecord) -> Array:
+
+def _kept(evaluate: _Vector) -> _Vector:
+    last: tuple[State, Array] | None = None
+
+    def force(record: StepRecord) -> Array:
         nonlocal last
-        state = _fluid_state(record)
-        if last is None or last[0] is not state:
-            last = (state, boundary.evaluate(state))
+        if last is None or last[0] is not record.state:
+            last = (record.state, evaluate(record))
         return last[1]
 
-    return evaluate
+    return force
+
+
+def _is_dry(fluid: FluidPart, solid: SolidPart, force: case.Force) -> bool:
+    """Whether the edges of a force are at solids and not at the fluid."""
+    wet, dry = (any(len(part.mesh.edge_groups.get(name, ())) for name in force.on) for part in (fluid, solid))
+    return dry and not wet
 
 
 def _boundary_force(fluid: FluidPart, force: case.Force) -> BoundaryForce:
@@ -128,6 +141,45 @@ def _boundary_force(fluid: FluidPart, force: case.Force) -> BoundaryForce:
         return BoundaryForce(fluid.solver, force.on)
     except CaseError as error:
         raise CaseError(error.problem, f"{force.place}.on") from error
+
+
+def _solid_force(problem: Problem, solid: SolidPart, force: case.Force) -> _Vector:
+    """Force of a solid on its surroundings at dry edges."""
+    from hofsi.solvers.solid_forces import SolidForce
+
+    try:
+        boundary = SolidForce(solid.solver, force.on)
+    except CaseError as error:
+        raise CaseError(error.problem, f"{force.place}.on") from error
+    if problem.fluid is None or problem.interface is None:
+        return lambda record: boundary.evaluate(_solid_state(record))
+    correction = _load_of_walls(problem.fluid, solid, problem.interface)
+
+    def evaluate(record: StepRecord) -> Array:
+        state = _solid_state(record)
+        assert state.reaction is not None
+        return boundary.evaluate(replace(state, reaction=state.reaction - correction(record)))
+
+    return evaluate
+
+
+def _load_of_walls(fluid: FluidPart, solid: SolidPart, interface: Interface) -> _Vector:
+    """Part of the nodal load (n, 2) that acts on walls of the fluid, at interface nodes where the solid is fixed.
+
+    It does not move the solid, so the coupling leaves it in the load; the reaction must not contain it.
+    """
+    from hofsi.coupling.load import InterfaceLoad
+
+    fixed = solid.solver.supports.constraints.fixed[interface.solid]
+    load = InterfaceLoad(fluid.solver, interface, ~(fixed[:, 0] & fixed[:, 1]))
+
+    def evaluate(record: StepRecord) -> Array:
+        state = _fluid_state(record)
+        walls = np.zeros(solid.mesh.points.shape)
+        walls[interface.solid] = load.evaluate(state) + state.reaction[interface.fluid]
+        return walls
+
+    return evaluate
 
 
 def _solid_vector(solid: SolidPart, probe: case.Probe, place: str) -> _Vector:

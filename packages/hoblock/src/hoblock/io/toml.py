@@ -15,8 +15,9 @@ from hoblock.errors import SceneError
 from hoblock.io.values import describe, place_of
 from hoblock.spelling import suggestion
 
-__all__ = ["apply_overrides", "naming_file", "read_toml"]
+__all__ = ["apply_overrides", "naming_file", "read_toml", "repeat_option"]
 
+_CHANGE = re.compile(r"[A-Za-z_][\w.\[\]\"-]*=")
 _SEGMENT = re.compile(r'([A-Za-z0-9_-]+)|"([^"]+)"|\[([0-9]{1,9})\]')
 
 
@@ -178,3 +179,18 @@ def _index(segment: str | int, items: Sequence[Any], place: str) -> int:
         expected = f"an index from 0 to {len(items) - 1}" if items else "no index, the list is empty"
         raise SceneError(f"got the index {segment}; expected {expected}", place)
     return index
+
+
+def repeat_option(arguments: Sequence[str], option: str = "--set") -> list[str]:
+    """Return a command line's words with ``--set a=1 b=2`` written as ``--set a=1 --set b=2``.
+
+    A word after a value of the option counts as another value if it reads ``key=…``.
+    """
+    words: list[str] = []
+    values = False  # the last word was a value of the option
+    for word in arguments:
+        if values and _CHANGE.match(word):
+            words.append(option)
+        values = bool(words) and words[-1] == option
+        words.append(word)
+    return words

@@ -140,17 +140,27 @@ def vertex_patches(structure: BlockStructure, free: Index, ideal: Array) -> tupl
         Angle wanted at each corner of each block, in radians.
     """
     quads = structure.topology.quads
-    blocks_of = [np.flatnonzero((quads == vertex).any(axis=1)) for vertex in range(len(structure.vertices))]
+    blocks_of = _rows_of(quads, len(structure.vertices))
+    edges_of = _rows_of(structure.topology.edges, len(structure.vertices))
     color = np.full(len(structure.vertices), -1)
     for vertex in free:
         taken = color[quads[blocks_of[vertex]]]
         color[vertex] = next(c for c in range(len(free)) if c not in taken)
     return tuple(
-        _patches(structure, np.flatnonzero(color == c), blocks_of, ideal) for c in range(int(color.max(initial=-1)) + 1)
+        _patches(structure, np.flatnonzero(color == c), blocks_of, edges_of, ideal)
+        for c in range(int(color.max(initial=-1)) + 1)
     )
 
 
-def _patches(structure: BlockStructure, vertices: Index, blocks_of: list[Index], ideal: Array) -> VertexPatches:
+def _rows_of(table: Index, count: int) -> list[Index]:
+    """Rows of a table of vertices in which each vertex stands, ascending."""
+    rows = np.argsort(table.ravel(), kind="stable") // table.shape[1]
+    return np.split(rows, np.cumsum(np.bincount(table.ravel(), minlength=count))[:-1])
+
+
+def _patches(
+    structure: BlockStructure, vertices: Index, blocks_of: list[Index], edges_of: list[Index], ideal: Array
+) -> VertexPatches:
     quads, edges = structure.topology.quads, structure.topology.edges
     angles: list[tuple[int, int, int, int, int]] = []
     wanted: list[float] = []
@@ -166,7 +176,7 @@ def _patches(structure: BlockStructure, vertices: Index, blocks_of: list[Index],
                 k = (place + turn) % 4
                 angles.append((quads[block, k], quads[block, (k + 1) % 4], quads[block, k - 1], *derivative))
                 wanted.append(float(ideal[block, k]))
-        ends = edges[(edges == vertex).any(axis=1)]
+        ends = edges[edges_of[vertex]]
         pairs.extend((int(vertex), int(other)) for other in ends[ends != vertex])
     corner, after, before, by_after, by_before = np.array(angles, dtype=np.int64).T
     own, other = np.array(pairs, dtype=np.int64).T

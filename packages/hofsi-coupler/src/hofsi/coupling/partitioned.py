@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.interface import Interface
+from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
 from hofsi.coupling.relaxation import Accelerator
 from hofsi.errors import ConvergenceError, CouplingError
@@ -28,13 +29,15 @@ __all__ = ["CoupledMarch"]
 _HISTORY = 4  # interface displacements kept: a cubic predictor needs four
 _SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
 _NEWTON = 2  # Newton iterations of the fluid in one coupling iteration
+_NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers
+_INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
 
 
 @dataclass
 class _Fields:
     """What the last coupling iteration left behind."""
 
-    fluid: FluidStep
+    fluid: FluidState
     mesh: MeshState
     solid: SolidStep
     displacement: Array
@@ -73,6 +76,9 @@ class CoupledMarch:
         self._accelerator, self._clock = accelerator, clock
         self._test = ConvergenceTest(settings.tolerance)
         self._rows = np.searchsorted(motion.driven.nodes, interface.fluid)
+        held = np.logical_and.reduce(solid.supports.constraints.fixed[interface.solid], axis=1)
+        self._load = InterfaceLoad(fluid, interface, held)
+        self._regenerated = 0  # blocks, in the meshes of the step at hand
 
     def initial(self, time: float) -> State:
         """Initial fields; the fluid mesh fits the solid's initial displacement."""
@@ -88,7 +94,9 @@ class CoupledMarch:
 
     def _move(self, current: MeshState, d: Array, time: float) -> MeshState:
         with self._clock.phase("mesh"):
-            return self._motion.move(current, self._driven(d, time), time)
+            moved = self._motion.move(current, self._driven(d, time), time)
+        self._regenerated += moved.regenerated
+        return moved
 
     def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
         """One time step, iterated until displacement and force have converged."""
@@ -96,6 +104,7 @@ class CoupledMarch:
         order = min(2, len(state.interface), len(steps), len(fluid.velocities))
         c = bdf_weights(steps[:order])
         rest = np.tensordot(c[1:], np.stack(state.interface[:order]), axes=1)
+        self._regenerated = 0
         predicted = predict(state.interface, steps, self._settings.predictor)
         solid_step = self._solid.begin_step(solid, steps, time)
         implicit = self._settings.geometry == "implicit"
@@ -120,12 +129,12 @@ class CoupledMarch:
             last = step
             return step, moved
 
-        self._test.begin_step(state.interface[0], _load(fluid.reaction, self._interface))
+        self._test.begin_step(state.interface[0], self._load.evaluate(fluid))
         fields, record = self._iterate(predicted, flow, solid_step, f"coupling, t = {time:g}")
         d = fields.displacement[self._interface.solid]
         with self._clock.phase("solid"):
             accepted = solid_step.accept(fields.displacement)
-        return State(fields.fluid.accept(), accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1])), record
+        return State(fields.fluid, accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1])), record
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         """Iterate steady flow and static equilibrium on meshes that fit the current displacement.
@@ -134,6 +143,7 @@ class CoupledMarch:
         the load is applied in parts.
         """
         solid = _parts(state)[1]
+        self._regenerated = 0
         solid_step = self._solid.begin_static(solid)
         with self._clock.phase("solid"):
             start = unloaded = solid_step.solve(None)
@@ -144,7 +154,7 @@ class CoupledMarch:
         except ConvergenceError:
             fields, record = self._steady_by_parts(state, unloaded)
         d = fields.displacement[self._interface.solid]
-        return State(fields.fluid.accept(), fields.solid.accept(fields.displacement), fields.mesh, (d,)), record
+        return State(fields.fluid, fields.solid.accept(fields.displacement), fields.mesh, (d,)), record
 
     def _steady_by_parts(self, state: State, displacement: Array) -> tuple[_Fields, CouplingRecord]:
         """Apply the fluid's load in parts, from one steady state to the next."""
@@ -200,42 +210,49 @@ class CoupledMarch:
         """Fixed-point iteration d ↦ d̃ with acceleration, under a share of the fluid's load."""
         settings, interface = self._settings, self._interface
         self._accelerator.begin_step()
+        inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
         displacement: Array | None = None
         residuals = Residuals(np.inf, np.inf)
         for iteration in range(1, settings.max_iterations + 1):
             step, moved = flow(d)
             with self._clock.phase("fluid"):
-                force = _load(step.reaction(), interface)
+                fluid = step.accept()
+                force = self._load.evaluate(fluid)
             with self._clock.phase("solid"):
-                displacement = solid_step.solve(share * self._nodal(force), displacement)
+                displacement = solid_step.solve(share * self._nodal(force), displacement, tolerance=inner)
             image = displacement[interface.solid]
             residual = image - d
             if not (np.isfinite(residual).all() and np.isfinite(force).all()):
                 raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
             residuals = self._test.residuals(image, residual, force)
-            if residuals.largest <= settings.tolerance:
+            if step.converged and residuals.largest <= settings.tolerance:
                 self._accelerator.end_step()
                 record = CouplingRecord(iteration, residuals.displacement, residuals.force)
-                return _Fields(step, moved, solid_step, displacement), record
+                mesh = replace(moved, regenerated=self._regenerated)
+                return _Fields(fluid, mesh, solid_step, displacement), record
             with self._clock.phase("coupling"):
                 d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
         raise CouplingError(
             f"not converged after {settings.max_iterations} iterations: displacement residual "
             f"{residuals.displacement:.2g}, force residual {residuals.force:.2g}, expected below "
-            f'{settings.tolerance:g}. Lower time.dt, raise coupling.max_iterations, or use coupling.acceleration = "iqn-ils".',
+            f"{settings.tolerance:g}. {self._way_out(residuals)}",
             "max_iterations",
             where,
         )
+
+    def _way_out(self, residuals: Residuals) -> str:
+        settings = self._settings
+        if residuals.largest < _NEARLY:
+            return "That is close to rounding: raise coupling.tolerance."
+        ways = "Lower time.dt, or the load of a steady case, or raise coupling.max_iterations"
+        if settings.acceleration != "iqn-ils":
+            ways += ', or set coupling.acceleration = "iqn-ils"'
+        return f"{ways}."
 
     def _nodal(self, force: Array) -> Array:
         nodal = np.zeros(self._solid.mesh.points.shape)
         nodal[self._interface.solid] = force
         return nodal
-
-
-def _load(reaction: Array, interface: Interface) -> Array:
-    """Force of the fluid on the solid at the interface nodes: minus the fluid's momentum residual."""
-    return -reaction[interface.fluid]
 
 
 def _parts(state: State) -> tuple[FluidState, SolidState, MeshState]:

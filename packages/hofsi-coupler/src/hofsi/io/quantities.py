@@ -37,6 +37,11 @@ def read_quantity(name: str, table: Table, mesh: MeshScene, constants: Mapping[s
     SceneError
         A missing or unknown key, an unknown name, a value of the wrong type or out of range.
     """
+    if not name or name != name.strip() or not name.isprintable():
+        raise CaseError(
+            f"got the name {name!r}; expected printable characters without spaces around them. Choose another name",
+            table.place,
+        )
     quantity: Quantity
     match table.string("type", choices=_TYPES):
         case "probe":
@@ -57,7 +62,7 @@ def _probe(name: str, table: Table, mesh: MeshScene, constants: Mapping[str, flo
     at = _point(table, "at", mesh, constants)
     match table.string("field", choices=("displacement", "velocity", "pressure")):
         case "displacement":
-            return Probe(name, "displacement", _component(table), at, _owner(table, "solid", "fluid"), table.place)
+            return Probe(name, "displacement", _component(table), at, _owner(table, "solid", None), table.place)
         case "velocity":
             return Probe(name, "velocity", _component(table), at, _owner(table, "fluid", None), table.place)
         case _:

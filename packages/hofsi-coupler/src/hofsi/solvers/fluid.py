@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from hoblock import QuadMesh
 from hofsi import case
 from hofsi.counts import Counts
-from hofsi.errors import NewtonError
+from hofsi.errors import LinearSolverError, NewtonError
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.linear.solver import Solver
+from hofsi.solvers.continuation import approach
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
 from hofsi.solvers.fluid_system import FluidSystem, fluid_system
@@ -26,6 +27,10 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 __all__ = ["FluidSolver", "FluidState", "FluidStep"]
+
+_ON_THE_WAY = 1e-6  # tolerance of the problems that continuation solves on the way
+_ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else is left of a flow without stress
+_FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,9 @@ class FluidSolver:
     linear : LinearSettings
     interface : ndarray
         Nodes whose velocity a solid prescribes.
+    driven : ndarray, optional
+        Nodes of all edges that move by themselves, the interface included: no-slip walls elsewhere do not follow nodes
+        that slide along them. By default all walls move with their nodes.
     """
 
     def __init__(
@@ -77,10 +85,11 @@ class FluidSolver:
         nonlinear: case.NonlinearSettings,
         linear: case.LinearSettings,
         interface: Index,
+        driven: Index | None = None,
     ) -> None:
         self.mesh, self.fluid, self.nonlinear, self.linear = mesh, fluid, nonlinear, linear
         self.space = TaylorHood.on(mesh)
-        self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity)
+        self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.counts = Counts()
         self._system: FluidSystem | None = None
         self._system_for: object = None
@@ -131,7 +140,7 @@ class FluidSolver:
         if linear and self.convecting:
             e = extrapolation_weights(steps, order - 1)
             advective = np.tensordot(e, np.stack(state.velocities[:order]), axes=1) - mesh_velocity
-            advective[self.boundary.sticking] = 0.0
+            self.boundary.stick(advective, points, mesh_velocity)
         return FluidStep(self, state, points, mesh_velocity, float(c[0]), history, time, advective, order)
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
@@ -199,7 +208,8 @@ class FluidSolver:
 class FluidStep:
     """One step, or the steady problem, on one mesh; made by `FluidSolver`.
 
-    A linear step is assembled and factorised once, however often it is solved.
+    A linear step is assembled and factorised once, however often it is solved. A steady problem that Newton's method
+    does not solve from where it starts is approached from Stokes flow, with more and more of the convection.
 
     Attributes
     ----------
@@ -225,6 +235,7 @@ class FluidStep:
         self._rate, self._advective, self._order = rate, advective, order
         self.linear = advective is not None or not solver.convecting
         self.converged = False
+        self._share = 1.0  # of the convection
         self._load = self._external(history)
         self._matrix: Array | None = None
         self._factor: Solver | None = None
@@ -258,7 +269,8 @@ class FluidStep:
         space = self.solver.space
         geometry, dNx, dNy = self.solver.geometry(self.points)
         a = space.velocity.N @ advective[space.velocity_cells]
-        block = kernel.transport(space.velocity.N, dNx, dNy, geometry.weights, 0.0, self.solver.fluid.density, a)
+        density = self._share * self.solver.fluid.density
+        block = kernel.transport(space.velocity.N, dNx, dNy, geometry.weights, 0.0, density, a)
         space.add(A, 0, 0, block)
         space.add(A, 1, 1, block)
 
@@ -267,7 +279,8 @@ class FluidStep:
         space = self.solver.space
         geometry, dNx, dNy = self.solver.geometry(self.points)
         gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
-        blocks = kernel.reaction(space.velocity.N, geometry.weights, self.solver.fluid.density, gradient)
+        density = self._share * self.solver.fluid.density
+        blocks = kernel.reaction(space.velocity.N, geometry.weights, density, gradient)
         for (a, b), block in zip(((0, 0), (0, 1), (1, 0), (1, 1)), blocks, strict=True):
             space.add(A, a, b, block)
 
@@ -289,7 +302,7 @@ class FluidStep:
         Raises
         ------
         NewtonError
-            If Newton's method does not converge within the case's limit.
+            If Newton's method does not converge within the case's limit; if the problem is steady, not in steps either.
         """
         self.converged = False
         n = 2 * self.solver.space.velocity_count
@@ -299,9 +312,9 @@ class FluidStep:
         enclosed = self.solver.enclosed(self.points)
         if enclosed:
             geometry, flux = self.solver.geometry(self.points)[0], self.solver.pressure_work(self.points)
-            enclosed.balance(self._load, velocity, geometry, flux)
+            enclosed.balance(self._load, velocity, geometry, flux, moving=bool(self.mesh_velocity.any()))
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found below
-            unknowns = self._solve_linear(unknowns) if self.linear else self._solve_newton(unknowns, max_iterations)
+            unknowns = self._solve_linear(unknowns) if self.linear else self._solve_nonlinear(unknowns, max_iterations)
         if enclosed and self._residual is not None:
             enclosed.remove_mean(unknowns[n:], self._residual, geometry, flux)
         self._unknowns = unknowns
@@ -325,13 +338,42 @@ class FluidStep:
         self.converged = True
         return unknowns
 
-    def _solve_newton(self, unknowns: Array, max_iterations: int | None) -> Array:
+    def _solve_nonlinear(self, unknowns: Array, max_iterations: int | None) -> Array:
+        """Newton's method, and continuation if it fails on a steady problem."""
+        settings = self.solver.nonlinear
+        if max_iterations is not None:
+            return self._solve_newton(unknowns, max_iterations, settings.tolerance, stop=True)
+        try:
+            return self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
+        except (NewtonError, LinearSolverError) as error:
+            if self._rate:
+                raise
+            failure = error
+        try:
+            return approach(self._with_share, unknowns, failure, "of the convection")
+        finally:
+            self._share = 1.0
+
+    def _with_share(self, unknowns: Array, share: float) -> Array:
+        """Solve with a share of the convection, roughly if it is not all."""
         solver, settings = self.solver, self.solver.nonlinear
-        limit = settings.max_iterations if max_iterations is None else max_iterations
+        self._share = share
+        solver.counts.continuation_steps += 1
+        if share == 1.0:
+            return self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
+        newton = solver.fluid.convection != "picard"
+        limit = min(_FEW, settings.max_iterations) if newton else settings.max_iterations
+        rough = self._solve_newton(unknowns, limit, max(_ON_THE_WAY, settings.tolerance))
+        self.converged = False
+        return rough
+
+    def _solve_newton(self, unknowns: Array, limit: int, tolerance: float, *, stop: bool = False) -> Array:
+        """At most some iterations; with ``stop``, ending there is not an error."""
+        solver = self.solver
         picard = solver.fluid.convection == "picard"
         A, norm, scale = self._linearise(unknowns)
         for iteration in range(limit + 1):
-            if norm <= settings.tolerance * scale:
+            if norm <= tolerance * scale or norm <= _ROUNDING * self._magnitude(A, unknowns):
                 self.converged = True
                 return unknowns
             if not np.isfinite(norm):
@@ -352,10 +394,10 @@ class FluidStep:
             solver.counts.solves += 1
             solver.counts.iterations += 1
             unknowns, A, norm, scale = self._damped(unknowns, delta, norm)
-        if max_iterations is None:
+        if not stop:
             raise NewtonError(
                 f"Newton's method stopped at a relative residual of {norm / scale:.2g} after {limit} iterations; "
-                f"expected below {settings.tolerance:g}. Refine the mesh, lower the Reynolds number, march in time, or "
+                f"expected below {tolerance:g}. Refine the mesh, lower the Reynolds number, march in time, or "
                 'use convection = "picard".',
                 "max_iterations",
                 f"fluid, t = {self.time:g}",
@@ -388,6 +430,13 @@ class FluidStep:
         scale = assemble_vector(dofs, inner + np.abs(self._load), size)
         residual = self._in_frames(assemble_vector(dofs, self._residual, size))
         return A, float(np.linalg.norm(residual[free])), float(np.linalg.norm(scale)) or 1.0
+
+    def _magnitude(self, A: Array, unknowns: Array) -> float:
+        """Norm of |A| |u|: unlike the scale it does not vanish if the terms of every row cancel."""
+        space = self.solver.space
+        local = np.abs(unknowns)[space.dofs]
+        rows = (np.abs(A) @ local[:, :, None])[:, :, 0]
+        return float(np.linalg.norm(assemble_vector(space.dofs, rows, space.size)))
 
     def _free_rows(self, system: FluidSystem) -> Index:
         inner = system.dofs[:, system.boundary :].ravel()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import QuadMesh
+from hoblock.numbering import side_nodes
 from hofsi import case
 from hofsi.fem.constraints import DirectedNodes, NodeConstraints
 from hofsi.fem.geometry import SideGeometry, physical_gradients, side_geometry
@@ -34,6 +35,16 @@ def _nodes(mesh: QuadMesh, names: Sequence[str]) -> Index:
     return np.unique(np.concatenate([mesh.edge_nodes(name) for name in names]))
 
 
+def _nodes_along(mesh: QuadMesh, sides: Index) -> Index:
+    """Nodes of element sides (k, 2) from end to end, shape (k, order + 1)."""
+    return np.asarray(mesh.cells[sides[:, 0, None], side_nodes(mesh.order)[sides[:, 1]]])
+
+
+def _are_driven(mesh: QuadMesh, sides: Index, driven: Index) -> NDArray[np.bool_]:
+    """Whether the nodes between the ends of element sides (k, 2) are driven; the ends may belong to other edges."""
+    return np.asarray(np.isin(_nodes_along(mesh, sides)[:, 1:-1], driven).all(axis=1))
+
+
 def _same_directions(first: Sequence[DirectedNodes], second: Sequence[DirectedNodes]) -> bool:
     """Whether two lists constrain the same nodes along the same directions, but for round-off."""
     return len(first) == len(second) and all(
@@ -42,10 +53,57 @@ def _same_directions(first: Sequence[DirectedNodes], second: Sequence[DirectedNo
     )
 
 
+class _Sliding:
+    """No-slip walls that stand, along which the mesh may slide.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+    space : TaylorHood
+    conditions : sequence of FluidCondition
+    driven : ndarray or None
+        As of `FluidBoundary`.
+    """
+
+    def __init__(
+        self, mesh: QuadMesh, space: TaylorHood, conditions: Sequence[case.FluidCondition], driven: Index | None
+    ) -> None:
+        self._space = space
+        self._standing, self._carried = np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int64)
+        self._last: tuple[Array, Index, Array] | None = None
+        walls = [name for c in conditions if isinstance(c, case.NoSlip) for name in c.on]
+        if driven is not None and walls:
+            sides = _sides(mesh, walls)
+            self._standing = sides[~_are_driven(mesh, sides, driven)]
+            sides = _sides(mesh, [name for c in conditions if isinstance(c, case.NoSlip | case.Slip) for name in c.on])
+            self._carried = np.unique(_nodes_along(mesh, sides[_are_driven(mesh, sides, driven)]))
+
+    def wall_velocity(self, points: Array, mesh_velocity: Array) -> Array:
+        """Mesh velocity (n, 2) without its part along these walls; where they meet or end at driven walls it stays."""
+        if not self._standing.size or not mesh_velocity.any():
+            return mesh_velocity
+        nodes, normals = self._normals(points)
+        result = mesh_velocity.copy()
+        result[nodes] = np.sum(normals * mesh_velocity[nodes], axis=1)[:, None] * normals
+        return result
+
+    def _normals(self, points: Array) -> tuple[Index, Array]:
+        """Nodes that may slide, and their normals; kept while the mesh stands still."""
+        if self._last is None or self._last[0] is not points:
+            cells = self._space.velocity_cells
+            smooth = consistent_normals(points[cells], cells, self._standing, self._space.velocity_sides)[0]
+            free = ~np.isin(smooth.nodes, self._carried)
+            self._last = (points, smooth.nodes[free], smooth.directions[free])
+        return self._last[1:]
+
+
 class FluidBoundary:
     """The conditions of a fluid, resolved on its mesh.
 
     Where conditions meet at a node, the interface comes first, then no-slip walls, given velocities, slip.
+
+    A no-slip wall that is driven has the velocity of the mesh. Along any other wall the nodes may slide, because a
+    moving boundary pushes them; such a wall has the normal part of the mesh velocity only.
 
     Parameters
     ----------
@@ -56,6 +114,8 @@ class FluidBoundary:
     interface : ndarray
         Nodes whose velocity the solid prescribes; may be empty.
     viscosity : float
+    driven : ndarray or None
+        Nodes that move as something outside the mesh wants them to; None if all do.
     """
 
     def __init__(
@@ -65,11 +125,13 @@ class FluidBoundary:
         conditions: Sequence[case.FluidCondition],
         interface: Index,
         viscosity: float,
+        driven: Index | None = None,
     ) -> None:
         self._mesh, self._space, self._viscosity = mesh, space, viscosity
         self.interface = interface
         walls = [c for c in conditions if isinstance(c, case.NoSlip)]
         self.walls = _nodes(mesh, [name for c in walls for name in c.on]) if walls else np.zeros(0, dtype=np.int64)
+        self._sliding = _Sliding(mesh, space, conditions, driven)
         self._given = [(c, _nodes(mesh, c.on)) for c in conditions if isinstance(c, case.Velocity)]
         slips = [c for c in conditions if isinstance(c, case.Slip)]
         self._slip = _sides(mesh, [name for c in slips for name in c.on]) if slips else np.zeros((0, 2), dtype=np.int64)
@@ -85,10 +147,11 @@ class FluidBoundary:
         self._slipping: list[DirectedNodes] = []
         self._constraints_at: Array | None = None
 
-    @property
-    def sticking(self) -> Index:
-        """Nodes that move with the boundary: no relative velocity there."""
-        return np.union1d(self.interface, self.walls)
+    def stick(self, advective: Array, points: Array, mesh_velocity: Array) -> None:
+        """Write what is known of the velocity relative to the mesh, at walls and interface, into a field (n, 2)."""
+        walls = self.walls
+        advective[walls] = self._sliding.wall_velocity(points, mesh_velocity)[walls] - mesh_velocity[walls]
+        advective[self.interface] = 0.0
 
     def constraints(self, points: Array) -> NodeConstraints:
         """Constraints at given node positions; the same object as long as the normals of the slip edges stay."""
@@ -124,7 +187,8 @@ class FluidBoundary:
             Velocity of the interface nodes.
         time : float
         """
-        values = [interface[:, 0], interface[:, 1], mesh_velocity[self.walls, 0], mesh_velocity[self.walls, 1]]
+        walls = self._sliding.wall_velocity(points, mesh_velocity)[self.walls]
+        values = [interface[:, 0], interface[:, 1], walls[:, 0], walls[:, 1]]
         for condition, nodes in self._given:
             x, y = points[nodes].T
             values += [c.evaluate(x=x, y=y, t=time) for c in (condition.x, condition.y) if c is not None]

@@ -19,7 +19,7 @@ from hofsi.solvers.fluid import FluidSolver, FluidState
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["BoundaryForce", "boundary_sides"]
+__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides"]
 
 
 def boundary_sides(mesh: QuadMesh) -> Index:
@@ -49,6 +49,52 @@ class _Corner:
     node: int
     given: tuple[bool, bool]
     slip: bool
+
+
+class NeighbourSides:
+    """What the sides around a set of boundary sides add to the momentum residual at the nodes of the set.
+
+    The residual at a node is ∫ φ σ·n over all sides at the node whose velocity is given. For every side outside the
+    set that meets it in a node, its share is integrated directly.
+
+    Parameters
+    ----------
+    solver : FluidSolver
+    sides : sequence of (int, int)
+        Elements and sides outside the set.
+    nodes : ndarray
+        Of the set.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (c,)
+        Where they meet; a node may occur twice. Its length is that of this object.
+    """
+
+    def __init__(self, solver: FluidSolver, sides: Sequence[tuple[int, int]], nodes: Index) -> None:
+        mesh = solver.mesh
+        found = _corners(mesh, sides, _conditions(mesh, solver.fluid.boundaries), nodes)
+        self._solver, self._corners = solver, sorted(found, key=lambda corner: corner.side)
+        cells = solver.space.velocity_cells
+        self.nodes = np.array([cells[corner.element, corner.node] for corner in self._corners], dtype=np.int64)
+
+    def __len__(self) -> int:
+        return len(self._corners)
+
+    def forces(self, state: FluidState) -> Array:
+        """∫ φ σ·n for each of ``nodes``, shape (c, 2)."""
+        solver, corners = self._solver, self._corners
+        cells = solver.space.velocity_cells[[corner.element for corner in corners]]
+        rows = np.array([[k, corner.side] for k, corner in enumerate(corners)])
+        forces = np.zeros((len(corners), 2))
+        for group in side_geometry(state.points[0][cells], rows, solver.space.velocity_sides):
+            members = [corners[k] for k in group.elements]
+            traction = _traction(solver, group, np.array([corner.element for corner in members]), state)
+            for k, corner, t, n in zip(group.elements, members, traction, group.normals, strict=True):
+                if corner.slip:
+                    t = n * (np.sum(t * n, axis=-1) / np.sum(n * n, axis=-1))[:, None]
+                forces[k] = np.where(corner.given, group.table.N[:, corner.node] @ t, 0.0)
+        return forces
 
 
 class BoundaryForce:
@@ -83,7 +129,6 @@ class BoundaryForce:
         mesh = solver.mesh
         outer = boundary_sides(mesh)
         chosen = _named_sides(mesh, names, outer)
-        conditions = _conditions(mesh, solver.fluid.boundaries)
         self._solver = solver
         self._nodes = np.unique(mesh.cells[chosen[:, 0, None], side_nodes(mesh.order)[chosen[:, 1]]])
         self._loaded = [
@@ -93,15 +138,15 @@ class BoundaryForce:
         ]
         inside = set(map(tuple, chosen.tolist()))
         others = [(element, side) for element, side in outer.tolist() if (element, side) not in inside]
-        self._corners = sorted(_corners(mesh, others, conditions, self._nodes), key=lambda corner: corner.side)
+        self._neighbours = NeighbourSides(solver, others, self._nodes)
 
     def evaluate(self, state: FluidState) -> Array:
         """Return the force at a state that the solver has computed, shape (2,)."""
         force = -state.reaction[self._nodes].sum(axis=0)
         for condition, sides in self._loaded:
             force -= np.where(_given(condition), 0.0, self._load(condition, sides, state))
-        if self._corners:
-            force += self._at_corners(state)
+        if self._neighbours:
+            force += self._neighbours.forces(state).sum(axis=0)
         return np.asarray(force)
 
     def _load(self, condition: case.FluidCondition, sides: Index, state: FluidState) -> Array:
@@ -114,21 +159,6 @@ class BoundaryForce:
             else:
                 given = solver.boundary.traction(condition, group, state.time)
             total += given.sum(axis=(0, 1))
-        return total
-
-    def _at_corners(self, state: FluidState) -> Array:
-        """Sum of ∫ φ σ·n over the sides outside the set, shape (2,)."""
-        solver, corners = self._solver, self._corners
-        cells = solver.space.velocity_cells[[corner.element for corner in corners]]
-        rows = np.array([[k, corner.side] for k, corner in enumerate(corners)])
-        total = np.zeros(2)
-        for group in side_geometry(state.points[0][cells], rows, solver.space.velocity_sides):
-            members = [corners[k] for k in group.elements]
-            traction = _traction(solver, group, np.array([corner.element for corner in members]), state)
-            for corner, t, n in zip(members, traction, group.normals, strict=True):
-                if corner.slip:
-                    t = n * (np.sum(t * n, axis=-1) / np.sum(n * n, axis=-1))[:, None]
-                total += np.where(corner.given, group.table.N[:, corner.node] @ t, 0.0)
         return total
 
 

@@ -12,10 +12,11 @@ from hoblock import QuadMesh
 from hofsi import case
 from hofsi.counts import Counts
 from hofsi.errors import ConvergenceError, NewtonError
-from hofsi.fem.condensation import CondensedSystem
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_newton import SolidNewton, Tangent
+from hofsi.solvers.solid_rest import check_held
 from hofsi.solvers.solid_supports import SolidSupports
+from hofsi.solvers.solid_system import solid_system
 from hofsi.timestepping.schemes import bdf_weights
 
 Array = NDArray[np.float64]
@@ -38,13 +39,18 @@ class SolidState:
     displacements, velocities : tuple of ndarray, shape (n, 2)
         Newest first, at most two; read-only.
     time : float
+    reaction : ndarray, shape (n, 2), or None
+        Nodal forces of the supports on the solid, zero where nothing holds it; read-only. None in an initial state.
     """
 
     displacements: tuple[Array, ...]
     velocities: tuple[Array, ...]
     time: float
+    reaction: Array | None = None
 
     def __post_init__(self) -> None:
+        if self.reaction is not None:
+            object.__setattr__(self, "reaction", _frozen(self.reaction))
         for name in ("displacements", "velocities"):
             object.__setattr__(self, name, tuple(_frozen(array) for array in getattr(self, name)))
 
@@ -68,24 +74,31 @@ class SolidSolver:
         The solids' blocks only, undeformed.
     solids : sequence of Solid
     nonlinear : NonlinearSettings
+    linear : LinearSettings, optional
+        By default sparse LU.
 
     Attributes
     ----------
     equations : SolidEquations
     supports : SolidSupports
     system : CondensedSystem
-        Pattern of the linear systems.
+        The linear systems: LU or multigrid.
     counts : Counts
         What was done so far.
     """
 
-    def __init__(self, mesh: QuadMesh, solids: Sequence[case.Solid], nonlinear: case.NonlinearSettings) -> None:
+    def __init__(
+        self,
+        mesh: QuadMesh,
+        solids: Sequence[case.Solid],
+        nonlinear: case.NonlinearSettings,
+        linear: case.LinearSettings | None = None,
+    ) -> None:
         self.mesh, self.solids, self.nonlinear = mesh, tuple(solids), nonlinear
         self.equations = SolidEquations(mesh, solids)
         self.supports = SolidSupports(mesh, solids, self.equations.cells_of)
         self.counts = Counts()
-        size = 2 * len(mesh.points)
-        self.system = CondensedSystem(self.equations.dofs, self.equations.boundary, size, self.supports.constraints)
+        self.system = solid_system(self.equations, self.supports, linear or case.LinearSettings())
         self._tangent: Tangent | None = None
 
     def initial_state(self, time: float = 0.0) -> SolidState:
@@ -120,7 +133,14 @@ class SolidSolver:
         return SolidStep(self, state, bdf_weights(steps[:order]), time)
 
     def begin_static(self, state: SolidState | None = None) -> SolidStep:
-        """Start a search for static equilibrium, from a state or from the initial one."""
+        """Start a search for static equilibrium, from a state or from the initial one.
+
+        Raises
+        ------
+        CaseError
+            If the supports leave a part of the solids free to move without deforming.
+        """
+        check_held(self.mesh, self.solids, self.equations.cells_of, self.supports.constraints.entries)
         start = self.initial_state() if state is None else state
         return SolidStep(self, start, None, start.time)
 
@@ -154,6 +174,7 @@ class SolidStep:
         self._weights = weights
         equations = solver.equations
         self._dead = equations.loads.dead(time)
+        self._load: Array | None = None
         factor, acceleration = 0.0, None
         self._velocity_history = np.zeros(state.displacement.shape)
         if weights is not None:
@@ -197,6 +218,7 @@ class SolidStep:
         NewtonError, LinearSolverError
             If neither Newton's method from the guess nor applying the load little by little succeeds.
         """
+        self._load = load
         force = self._force(load)
         start = self.state.displacement if guess is None else guess
         tolerance = self.solver.nonlinear.tolerance if tolerance is None else tolerance
@@ -214,7 +236,7 @@ class SolidStep:
         return self.solver.supports.held_part(self._newton.residual(displacement, self._force(load)))
 
     def accept(self, displacement: Array) -> SolidState:
-        """Return the state at the end of the step.
+        """Return the state at the end of the step, its reaction under the load that was solved for last.
 
         Raises
         ------
@@ -230,10 +252,12 @@ class SolidStep:
                 "inverted",
                 f"solid, t = {self.time:g}",
             )
+        reaction = self.reaction(displacement, self._load)
         if self._weights is None:
-            return SolidState((displacement,), (np.zeros(displacement.shape),), self.time)
+            return SolidState((displacement,), (np.zeros(displacement.shape),), self.time, reaction)
         velocity = self._weights[0] * displacement + self._velocity_history
-        return SolidState((displacement, self.state.displacement), (velocity, self.state.velocity), self.time)
+        displacements, velocities = (displacement, self.state.displacement), (velocity, self.state.velocity)
+        return SolidState(displacements, velocities, self.time, reaction)
 
     def _force(self, load: Array | None) -> Array:
         return self._dead if load is None else self._dead + load

@@ -12,7 +12,7 @@ from hoblock import QuadMesh
 from hofsi import case
 from hofsi.errors import CaseError
 from hofsi.fem.assembly import MatrixPattern, assemble_vector
-from hofsi.fem.element import boundary_first, element_table
+from hofsi.fem.element import ElementTable, boundary_first, element_table
 from hofsi.fem.geometry import element_geometry
 from hofsi.kernels import elasticity as kernel
 from hofsi.solvers.solid_loads import FollowerPressure, SolidLoads
@@ -45,6 +45,8 @@ class SolidEquations:
         Whether all solids are linear.
     mass : csr_matrix, shape (n, n)
         Consistent mass matrix, the same for both components.
+    m : ndarray, shape (e, 1)
+        1 for St. Venant–Kirchhoff, 0 for linear solids.
     loads : SolidLoads
     """
 
@@ -61,14 +63,14 @@ class SolidEquations:
         self._weights = geometry.weights
         self._J_inv = kernel.components_outermost(geometry.J_inv)
         self._products = kernel.gradient_products(self._dN)
-        self._lame_lambda, self._lame_mu, self._m, density = _materials(len(mesh.cells), solids, self.cells_of)
-        self.linear = not self._m.any()
+        self._lame_lambda, self._lame_mu, self.m, density = _materials(len(mesh.cells), solids, self.cells_of)
+        self.linear = not self.m.any()
         self.dofs = (2 * self._cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
         self.boundary = 2 * on_boundary
         self._share = 1.0 / np.repeat(np.bincount(mesh.cells.ravel(), minlength=len(mesh.points)), 2)
         self._element_mass = kernel.mass(table.N[:, local], geometry.weights, density)
         self.mass: sp.csr_matrix = MatrixPattern(self._cells, len(mesh.points)).matrix(self._element_mass).tocsr()
-        self.loads = SolidLoads(mesh, solids, self.cells_of, geometry, self._m, count)
+        self.loads = SolidLoads(mesh, solids, self.cells_of, geometry, self.m, count)
 
     def gradient(self, displacement: Array) -> Array:
         """Displacement gradient at quadrature points, shape (e, q, a, d), of nodal displacements (n, 2)."""
@@ -76,20 +78,37 @@ class SolidEquations:
 
     def stress(self, gradient: Array) -> Array:
         """Second Piola–Kirchhoff stress, shape (e, q, 3): xx, yy, xy."""
-        return kernel.stress(gradient, self._lame_lambda, self._lame_mu, self._m)
+        return kernel.stress(gradient, self._lame_lambda, self._lame_mu, self.m)
+
+    def first_stress(self, displacement: Array, element: int, table: ElementTable) -> Array:
+        """First Piola–Kirchhoff stress F S in one element at some points, shape (q, a, d).
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (n, 2)
+        element : int
+        table : ElementTable
+            Basis at the points, local nodes in lexicographic order.
+        """
+        own, nodes = slice(element, element + 1), self.mesh.cells[[element]]
+        J_inv = element_geometry(self.mesh.points[nodes], table).J_inv
+        H = kernel.displacement_gradient(displacement[nodes], table.dN, J_inv)
+        S = kernel.stress(H, self._lame_lambda[own], self._lame_mu[own], self.m[own])[0]
+        F = kernel.deformation_gradient(H, self.m[own])[0]
+        return np.asarray(F @ np.stack([S[:, [0, 2]], S[:, [2, 1]]], axis=-2))
 
     def quadratic_stress(self, gradient: Array) -> Array:
         """Stress of the quadratic part of an increment's strain, shape (e, q, 3)."""
-        return kernel.quadratic_stress(gradient, self._lame_lambda, self._lame_mu, self._m)
+        return kernel.quadratic_stress(gradient, self._lame_lambda, self._lame_mu, self.m)
 
     def internal_force(self, gradient: Array, stress: Array) -> Array:
         """Nodal internal forces, shape (n, 2)."""
-        F = kernel.deformation_gradient(gradient, self._m)
+        F = kernel.deformation_gradient(gradient, self.m)
         return self._assembled(kernel.internal_force(F, stress, self._dN, self._J_inv, self._weights))
 
     def lowest_volume_ratio(self, displacement: Array) -> float:
         """Smallest det F at quadrature points; 1 for linear solids."""
-        F = kernel.deformation_gradient(self.gradient(displacement), self._m)
+        F = kernel.deformation_gradient(self.gradient(displacement), self.m)
         return float(np.min(F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]))
 
     def rounding(self, displacement: Array, gradient: Array) -> float:
@@ -101,9 +120,9 @@ class SolidEquations:
         steep, near = np.abs(self._dN), np.abs(self._J_inv)
         error = kernel.displacement_gradient(np.abs(displacement)[self._cells], steep, near).max(axis=(2, 3))
         stiffness = self._lame_lambda + 2.0 * self._lame_mu
-        size = stiffness * error * (1.0 + self._m * np.abs(gradient).max(axis=(2, 3))) ** 2
+        size = stiffness * error * (1.0 + self.m * np.abs(gradient).max(axis=(2, 3))) ** 2
         S = np.stack([size, size, np.zeros_like(size)], axis=-1)
-        F = kernel.deformation_gradient(gradient, np.zeros_like(self._m))
+        F = kernel.deformation_gradient(gradient, np.zeros_like(self.m))
         f = kernel.internal_force(F, S, steep, near, self._weights)
         return float(np.finfo(float).eps * np.linalg.norm(self._assembled(f)))
 
@@ -120,9 +139,9 @@ class SolidEquations:
         mass_factor : float
         pressures : sequence of FollowerPressure
         """
-        F = kernel.deformation_gradient(gradient, self._m)
+        F = kernel.deformation_gradient(gradient, self.m)
         K = kernel.stiffness(
-            F, stress, self._lame_lambda, self._lame_mu, self._m, self._products, self._J_inv, self._weights
+            F, stress, self._lame_lambda, self._lame_mu, self.m, self._products, self._J_inv, self._weights
         )
         if mass_factor:
             inertia = mass_factor * self._element_mass

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from hofsi.kernels import elasticity as kernel
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["FollowerPressure", "SolidLoads", "solid_sides"]
+__all__ = ["EdgeLoads", "FollowerPressure", "SolidLoads", "solid_sides"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +96,10 @@ class FollowerPressure:
     pressure: Array
     m: Array
 
+    def scaled(self, factor: float) -> FollowerPressure:
+        """Return the same load times a factor."""
+        return replace(self, pressure=factor * self.pressure)
+
     def add_force(self, f: Array, displacement: Array) -> None:
         """Add the nodal forces at a displacement (n, 2) to ``f`` (n, 2)."""
         x = self.X + self.m * displacement[self.nodes]
@@ -124,6 +128,65 @@ def _steady(expressions: Sequence[Expression]) -> bool:
     return not any("t" in expression.variables_used for expression in expressions)
 
 
+class EdgeLoads:
+    """Tractions and pressures on element sides.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+    conditions : sequence of (Traction or Pressure, ndarray of shape (k, 2))
+        With the element sides they act on.
+    m : ndarray, shape (e, 1)
+        1 for St. Venant–Kirchhoff, 0 for linear solids.
+    count : int
+        Quadrature points on a side.
+
+    Attributes
+    ----------
+    steady : bool
+        Whether the tractions do not depend on time.
+    """
+
+    def __init__(
+        self,
+        mesh: QuadMesh,
+        conditions: Sequence[tuple[case.Traction | case.Pressure, Index]],
+        m: Array,
+        count: int,
+    ) -> None:
+        self._mesh, self._m = mesh, m
+        self._tractions: list[tuple[case.VectorExpression, list[_Sides]]] = []
+        self._pressures: list[tuple[Expression, list[_Sides]]] = []
+        for condition, sides in conditions:
+            groups = _sides(mesh, sides, count)
+            if isinstance(condition, case.Traction):
+                self._tractions.append(((condition.x, condition.y), groups))
+            else:
+                self._pressures.append((condition.value, groups))
+        self.steady = _steady([f for force, _ in self._tractions for f in force])
+
+    def tractions(self, time: float) -> Array:
+        """Nodal forces of the tractions, shape (n, 2)."""
+        f = np.zeros(self._mesh.points.shape)
+        for traction, groups in self._tractions:
+            for side in groups:
+                values = kernel.traction_force(side.N, side.lengths, _pair(traction, side.x, time))
+                np.add.at(f, side.nodes, values)
+        return f
+
+    def pressures(self, time: float) -> list[FollowerPressure]:
+        """Follower loads at a time; those that are zero everywhere are left out."""
+        loads = []
+        for value, groups in self._pressures:
+            for side in groups:
+                p = value.evaluate(x=side.x[..., 0], y=side.x[..., 1], t=time) * side.weights
+                if p.any():
+                    m = self._m[side.elements][:, :, None]
+                    X = self._mesh.points[side.nodes]
+                    loads.append(FollowerPressure(side.elements, side.local, side.nodes, X, side.N, side.dN, p, m))
+        return loads
+
+
 class SolidLoads:
     """Body forces, tractions and pressures on the solids of a mesh.
 
@@ -150,51 +213,36 @@ class SolidLoads:
         m: Array,
         count: int,
     ) -> None:
-        self._mesh, self._geometry, self._m = mesh, geometry, m
+        self._mesh, self._geometry = mesh, geometry
         self._N = element_table(mesh.order, count).N
         self._body = [(s.body_force, own) for s, own in zip(solids, cells, strict=True) if s.body_force is not None]
-        self._tractions: list[tuple[case.VectorExpression, list[_Sides]]] = []
-        self._pressures: list[tuple[Expression, list[_Sides]]] = []
-        for solid, own in zip(solids, cells, strict=True):
-            for condition in solid.boundaries:
-                if isinstance(condition, case.Traction | case.Pressure):
-                    groups = _sides(mesh, solid_sides(mesh, condition, own), count)
-                    if isinstance(condition, case.Traction):
-                        self._tractions.append(((condition.x, condition.y), groups))
-                    else:
-                        self._pressures.append((condition.value, groups))
+        conditions = [
+            (condition, solid_sides(mesh, condition.on, own))
+            for solid, own in zip(solids, cells, strict=True)
+            for condition in solid.boundaries
+            if isinstance(condition, case.Traction | case.Pressure)
+        ]
+        self._edges = EdgeLoads(mesh, conditions, m, count)
         self._dead: Array | None = None
-        self._dead_is_steady = _steady([f for force, _ in (*self._body, *self._tractions) for f in force])
+        self._dead_is_steady = self._edges.steady and _steady([f for force, _ in self._body for f in force])
 
     def dead(self, time: float) -> Array:
         """Nodal forces of body forces and tractions, shape (n, 2); kept if they do not depend on time."""
         if self._dead is None or not self._dead_is_steady:
-            f = np.zeros(self._mesh.points.shape)
+            f = self._edges.tractions(time)
             for force, own in self._body:
                 at_points = _pair(force, self._geometry.x[own], time)
                 values = kernel.body_force(self._N, self._geometry.weights[own], at_points)
                 np.add.at(f, self._mesh.cells[own], values)
-            for traction, groups in self._tractions:
-                for side in groups:
-                    values = kernel.traction_force(side.N, side.lengths, _pair(traction, side.x, time))
-                    np.add.at(f, side.nodes, values)
             self._dead = f
         return self._dead
 
     def pressures(self, time: float) -> list[FollowerPressure]:
         """Follower loads at a time; those that are zero everywhere are left out."""
-        loads = []
-        for value, groups in self._pressures:
-            for side in groups:
-                p = value.evaluate(x=side.x[..., 0], y=side.x[..., 1], t=time) * side.weights
-                if p.any():
-                    m = self._m[side.elements][:, :, None]
-                    X = self._mesh.points[side.nodes]
-                    loads.append(FollowerPressure(side.elements, side.local, side.nodes, X, side.N, side.dN, p, m))
-        return loads
+        return self._edges.pressures(time)
 
 
-def solid_sides(mesh: QuadMesh, condition: case.SolidCondition, own: Index) -> Index:
-    """Element sides of a condition that belong to the elements of its solid, shape (k, 2)."""
-    sides = np.concatenate([mesh.edge_groups[name] for name in condition.on])
+def solid_sides(mesh: QuadMesh, names: Sequence[str], own: Index) -> Index:
+    """Element sides of named edges that belong to the elements of a solid, shape (k, 2); each counts once."""
+    sides = np.concatenate([mesh.edge_groups[name] for name in names])
     return np.unique(sides[np.isin(sides[:, 0], own)], axis=0)

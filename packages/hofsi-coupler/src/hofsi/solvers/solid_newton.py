@@ -148,12 +148,23 @@ class SolidNewton:
     def solve_by_parts(self, start: Array, force: Array, tolerance: float) -> Array:
         """Find the displacement by applying what is out of balance at the start little by little.
 
+        Pressures grow with the part, following the deformation: their counterpart in the imbalance would not.
+
         Raises
         ------
         NewtonError, LinearSolverError
             If the method does not converge with 1/1024 of the imbalance either.
         """
-        imbalance = self.residual(start, force)
+        pressures, self._pressures = self._pressures, []
+        try:
+            imbalance = self.residual(start, force)
+            return self._by_parts(start, force, imbalance, pressures, tolerance)
+        finally:
+            self._pressures = pressures
+
+    def _by_parts(
+        self, start: Array, force: Array, imbalance: Array, pressures: list[FollowerPressure], tolerance: float
+    ) -> Array:
         movement = self._supports.impose(start, self._time) - start
         done, part, d = 0.0, 0.25, start
         self.tangent = None
@@ -161,6 +172,7 @@ class SolidNewton:
         while done < 1.0:
             reached = min(1.0, done + part)
             last = reached == 1.0
+            self._pressures = pressures if last else [pressure.scaled(reached) for pressure in pressures]
             try:
                 d = self._iterate(
                     d,

@@ -42,7 +42,7 @@ class SolidSupports:
 
     def __init__(self, mesh: QuadMesh, solids: Sequence[case.Solid], cells: Sequence[Index]) -> None:
         conditions = [
-            (condition, solid_sides(mesh, condition, own))
+            (condition, solid_sides(mesh, condition.on, own))
             for solid, own in zip(solids, cells, strict=True)
             for condition in solid.boundaries
             if isinstance(condition, case.Displacement | case.Roller)

@@ -1,0 +1,285 @@
+"""A fluid alone through the scene interface: what a moving boundary does to the flow."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hofsi.build import Problem, build
+from hofsi.errors import CaseError
+from hofsi.io.scene import read_case
+from hofsi.quantities import evaluators
+from hofsi.records import StepRecord
+from hofsi.simulate import simulate
+
+MODES = ("newton", "picard", "extrapolated")
+MOVERS = ("pseudo-solid", "angle-optimisation")
+
+# d ──────────── c
+# │  h ── g      │
+# │  │    │      │      a hole e f g h in a channel
+# │  e ── f      │
+# a ──────────── b
+HOLE = """
+[mesh]
+order = 3
+
+[mesh.vertices]
+a = [0, 0]
+b = [2, 0]
+c = [2, 1]
+d = [0, 1]
+e = [0.5, 0.3]
+f = [1.1, 0.35]
+g = [1.0, 0.7]
+h = [0.6, 0.7]
+
+[mesh.blocks]
+fluid = [["a", "b", "f", "e"], ["b", "c", "g", "f"], ["c", "d", "h", "g"], ["d", "a", "e", "h"]]
+
+[mesh.edges]
+bottom = [["a", "b"]]
+right = [["b", "c"]]
+top = [["c", "d"]]
+left = [["d", "a"]]
+hole = [["e", "f", "g", "h", "e"]]
+"""
+
+BOX = """
+[mesh]
+order = 3
+elements = 2
+
+[mesh.vertices]
+a = [0, 0]
+b = [2, 0]
+c = [2, 1]
+d = [0, 1]
+
+[mesh.blocks]
+one = [["a", "b", "c", "d"]]
+
+[mesh.edges]
+bottom = [["a", "b"]]
+right = [["b", "c"]]
+top = [["c", "d"]]
+left = [["d", "a"]]
+"""
+
+
+def last(text: str) -> tuple[Problem, StepRecord, dict[str, float]]:
+    """Run a scene to its end."""
+    problem = build(read_case(tomllib.loads(text), "scene.toml"))
+    read = evaluators(problem)
+    *_, record = simulate(problem)
+    return problem, record, {name: evaluate(record) for name, evaluate in read.items()}
+
+
+def error(record: StepRecord, exact: Callable[[Any, Any], tuple[Any, Any]]) -> float:
+    """Largest error of the velocity at the nodes, where they are now."""
+    fluid = record.state.fluid
+    assert fluid is not None
+    x, y = fluid.points[0].T
+    u, v = exact(x, y)
+    return float(np.hypot(fluid.velocity[:, 0] - u, fluid.velocity[:, 1] - v).max())
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mover", MOVERS)
+@pytest.mark.parametrize("hole", ['type = "velocity"\nx = 1.3\ny = -0.7', 'type = "no-slip"'])
+def test_a_constant_flow_stays_constant_around_a_hole_that_moves(mode: str, mover: str, hole: str) -> None:
+    # With no-slip the hole drifts along with the flow; otherwise it moves as it likes.
+    moved = ("1.3*t", "-0.7*t") if "no-slip" in hole else ("0.1*sin(9*t)", "0.05*sin(12*t) + 0.2*t")
+    problem, record, found = last(f"""{HOLE}
+[fluid]
+density = 2.0
+viscosity = 0.01
+convection = "{mode}"
+initial_velocity = [1.3, -0.7]
+[[fluid.boundary]]
+on = ["left", "top", "bottom"]
+type = "velocity"
+x = 1.3
+y = -0.7
+[[fluid.boundary]]
+on = "right"
+type = "do-nothing"
+[[fluid.boundary]]
+on = "hole"
+{hole}
+[[motion]]
+on = "hole"
+x = "{moved[0]}"
+y = "{moved[1]}"
+[mover]
+type = "{mover}"
+[time]
+dt = 0.02
+steps = 8
+[quantities.push]
+type = "force"
+on = "hole"
+component = "x"
+""")
+    assert record.state.mesh is not None
+    assert problem.fluid is not None
+    assert np.abs(record.state.mesh.mesh.points - problem.fluid.mesh.points).max() > 0.05
+    assert error(record, lambda x, y: (1.3, -0.7)) < 1e-11
+    assert abs(found["push"]) < 1e-11
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_walls_do_not_follow_a_mesh_that_an_outlet_stretches(mode: str) -> None:
+    # The nodes slide along the walls; Poiseuille flow must not notice.
+    _, record, found = last(f"""{BOX}
+[fluid]
+density = 1.0
+viscosity = 0.1
+blocks = "one"
+convection = "{mode}"
+initial_velocity = ["4*y*(1 - y)", 0]
+[[fluid.boundary]]
+on = "left"
+type = "velocity"
+x = "4*y*(1 - y)"
+y = 0
+[[fluid.boundary]]
+on = ["top", "bottom"]
+type = "no-slip"
+[[fluid.boundary]]
+on = "right"
+type = "do-nothing"
+[[motion]]
+on = "right"
+x = "0.4*sin(3*t)"
+y = 0
+[time]
+dt = 0.05
+steps = 10
+[quantities.drag]
+type = "force"
+on = ["top", "bottom"]
+component = "x"
+[quantities.reach]
+type = "probe"
+field = "displacement"
+of = "fluid"
+component = "x"
+at = "c"
+""")
+    assert error(record, lambda x, y: (4.0 * y * (1.0 - y), 0.0)) < 1e-11
+    assert found["reach"] == pytest.approx(0.4 * np.sin(1.5), rel=1e-12)
+    assert found["drag"] == pytest.approx(2.0 * 0.1 * 4.0 * (2.0 + found["reach"]), rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_piston_pushes_fluid_out_between_walls_that_stand(mode: str) -> None:
+    # Far from the piston Poiseuille flow of the mean velocity -0.3: 1.5 times that in the middle, 0 at the walls.
+    _, _, found = last(f"""{BOX.replace("elements = 2", "elements = 4")}
+[fluid]
+density = 1.0
+viscosity = 1.0
+blocks = ["one"]
+convection = "{mode}"
+[[fluid.boundary]]
+on = ["top", "bottom", "right"]
+type = "no-slip"
+[[fluid.boundary]]
+on = "left"
+type = "do-nothing"
+[[motion]]
+on = "right"
+x = "-0.3*t"
+y = 0
+[time]
+dt = 0.1
+end = 1.0
+[quantities.middle]
+type = "probe"
+field = "velocity"
+component = "x"
+at = [0.5, 0.5]
+[quantities.wall]
+type = "probe"
+field = "velocity"
+component = "x"
+at = [0.5, 1.0]
+[quantities.piston]
+type = "probe"
+field = "velocity"
+component = "x"
+at = "c"
+""")
+    assert found["middle"] == pytest.approx(-0.45, rel=1e-3)
+    assert abs(found["wall"]) < 1e-14
+    assert found["piston"] == pytest.approx(-0.3, rel=1e-12)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_stagnation_flow_follows_the_plate_that_makes_it(mode: str) -> None:
+    # u = (x, -y)/2 under a plate at exp(-t/2) between slip walls, open on the right.
+    _, record, _ = last(f"""{BOX}
+[fluid]
+density = 1.0
+viscosity = 0.1
+blocks = ["one"]
+convection = "{mode}"
+initial_velocity = ["0.5*x", "-0.5*y"]
+body_force = ["0.25*x", "0.25*y"]
+[[fluid.boundary]]
+on = ["bottom", "top", "left"]
+type = "slip"
+[[fluid.boundary]]
+on = "right"
+type = "traction"
+x = 0.1
+[[motion]]
+on = "top"
+x = 0
+y = "exp(-0.5*t) - 1"
+[time]
+dt = 0.02
+end = 0.8
+""")
+    assert error(record, lambda x, y: (0.5 * x, -0.5 * y)) < 5e-5
+    assert record.state.fluid is not None
+    assert np.abs(record.state.fluid.pressure).max() < 5e-5
+
+
+def test_motions_that_contradict_each_other_where_they_meet_are_reported() -> None:
+    scene = f"""{BOX}
+[fluid]
+density = 1.0
+viscosity = 0.1
+blocks = ["one"]
+[[fluid.boundary]]
+on = ["bottom", "top", "right"]
+type = "no-slip"
+[[fluid.boundary]]
+on = "left"
+type = "do-nothing"
+[[motion]]
+on = "top"
+x = "0.05*x*t"
+y = "-0.1*t"
+[[motion]]
+on = "right"
+x = "0.1*t"
+y = "-0.1*y*t"
+[time]
+dt = 0.1
+steps = 2
+[quantities.corner]
+type = "probe"
+field = "displacement"
+of = "fluid"
+component = "magnitude"
+at = "c"
+"""
+    assert last(scene)[2]["corner"] == pytest.approx(np.hypot(0.02, 0.02), rel=1e-12)
+    with pytest.raises(CaseError, match=r"motion\[1\]: at \(2, 1\) and t = 0 it gives .* \(0, -0\.1\), and a motion"):
+        last(scene.replace('"-0.1*y*t"', "-0.1"))
