@@ -31,11 +31,6 @@ def test_nothing_to_simulate(read_changed: Read) -> None:
             r"solid\[0\].blocks: the block group 'fluid' is used by fluid already",
         ),
         (
-            'solid = [["b0", "c0", "c1", "b1"]]',
-            'solid = [["b0", "c0", "c1", "b1"]]\nspare = [["a0", "a1", "a2", "b0"]]',
-            r"mesh.blocks.spare: no material uses the block group 'spare'",
-        ),
-        (
             "[time]",
             '[[solid]]\nname = "rubber"\nblocks = "more"\ndensity = 1\nyoungs_modulus = 1\npoissons_ratio = 0\n[time]',
             r"solid\[1\].name: 'rubber' is the name of solid\[0\] already",
@@ -188,3 +183,18 @@ def test_quantities_of_a_missing_solid(read_changed: Read, fluid_alone: str) -> 
     probe = '\n[quantities.q]\ntype = "probe"\nfield = "displacement"\ncomponent = "x"\nat = "b1"\n'
     with pytest.raises(CaseError, match=r"quantities.q: a probe of the solid, and there is no \[\[solid\]\]"):
         read_changed(text=fluid_alone + probe)
+
+
+def test_blocks_without_a_material_are_left_out(read_changed: Read, flap: str) -> None:
+    """The flap alone, in the mesh of the channel."""
+    changes = (
+        (flap[flap.index("[fluid]") : flap.index("[[solid]]")], ""),
+        (flap[flap.index("[output]") :], ""),
+        ("[time]", '[[solid.boundary]]\non = "flap"\ntype = "free"\n\n[time]'),
+    )
+    case = read_changed(*changes)
+    assert case.fluid is None
+    assert {"fluid", "solid"} <= set(case.mesh.blocks)
+    wrong = (*changes[:2], ("[time]", '[[solid.boundary]]\non = ["flap", "inlet"]\ntype = "free"\n\n[time]'))
+    with pytest.raises(CaseError, match=r"solid\[0\].boundary\[1\].on: .* is not an edge of a block with a material"):
+        read_changed(*wrong)

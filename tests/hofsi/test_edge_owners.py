@@ -45,7 +45,7 @@ def test_two_solids_share_an_edge_that_is_dry() -> None:
         (("0", "1"), "belongs to the fluid alone"),
         (("1", "4"), "is inside the fluid"),
         (("2", "5"), "is shared by the fluid and solid 'flag'"),
-        (("0", "5"), "is not an edge of any block"),
+        (("0", "5"), "is not an edge of a block with a material"),
     ],
 )
 def test_where(owners: EdgeOwners, edge: tuple[str, str], words: str) -> None:

@@ -38,6 +38,9 @@ def test_frequency_lies_in_the_published_scatter(runs, mover):
 
 
 def test_the_mover_hardly_matters(runs):
-    """The mesh changes the discretisation error only: amplitudes agree within a few per cent."""
-    amplitudes = [np.mean([value for _, value in runs.peaks(mover)[-3:]]) for mover in runs.values]
-    assert amplitudes[0] == pytest.approx(amplitudes[1], rel=0.1)
+    """The mesh changes the discretisation error only; single peaks differ more, for the cycle is modulated."""
+    amplitudes = []
+    for mover, values in runs.values.items():
+        late = values[runs.times[mover] > 2.5]
+        amplitudes.append((np.max(late) - np.min(late)) / 2.0)
+    assert amplitudes[0] == pytest.approx(amplitudes[1], rel=0.05)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from hofsi.case import Case, Force, Motion, Pressure, Solid, SolidCondition, Traction
-from hofsi.edge_owners import FLUID, Edge, EdgeOwners, edges_of, in_words, solid_label
+from hofsi.edge_owners import FLUID, Edge, EdgeOwners, edges_of, in_words, quad_edges, solid_label
 from hofsi.errors import CaseError
 
 __all__ = ["check_fluid_boundaries", "check_forces", "check_motions", "check_named_edges", "check_solid_boundaries"]
@@ -31,7 +31,7 @@ class _Taken:
         return [edge for edge in edges if edge not in self._places]
 
 
-def check_named_edges(case: Case, owners: EdgeOwners) -> None:
+def check_named_edges(case: Case) -> None:
     """Check that the names of ``[mesh.edges]`` run along block edges.
 
     Raises
@@ -39,8 +39,9 @@ def check_named_edges(case: Case, owners: EdgeOwners) -> None:
     CaseError
         If a step of a path is not an edge of a block.
     """
+    known = {edge for quads in case.mesh.blocks.values() for quad in quads for edge in quad_edges(quad)}
     for name, edge in edges_of(case.mesh, case.mesh.edges):
-        if edge not in owners.of:
+        if edge not in known:
             raise CaseError(
                 f"the path steps from vertex to vertex over {in_words([edge])}, which is not an edge of any block. "
                 "Name all vertices along the way, and check their spelling",
@@ -157,7 +158,7 @@ def _body_at(case: Case, owners: EdgeOwners, quantity: Force, name: str, edge: E
 
 
 def _expect_outer(owners: EdgeOwners, label: str, name: str, edge: Edge, place: str) -> None:
-    if owners.of[edge] != (label,):
+    if owners.of.get(edge, ()) != (label,):
         raise CaseError(
             f"{_edge(name, edge)} {owners.where(edge)}; expected an outer edge of {label}. "
             f"Correct the paths of {name!r} in [mesh.edges], or use another name",

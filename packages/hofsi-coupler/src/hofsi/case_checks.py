@@ -43,7 +43,7 @@ def check_case(case: Case) -> None:
     _check_materials(case)
     check_order(case)
     owners = EdgeOwners.build(case.mesh, _groups(case))
-    boundary_checks.check_named_edges(case, owners)
+    boundary_checks.check_named_edges(case)
     boundary_checks.check_fluid_boundaries(case, owners)
     boundary_checks.check_solid_boundaries(case, owners)
     boundary_checks.check_motions(case, owners)
@@ -79,13 +79,6 @@ def _check_materials(case: Case) -> None:
     used: dict[str, str] = {}
     for material in (*((case.fluid,) if case.fluid else ()), *case.solids):
         _claim_blocks(material, used)
-    for group in case.mesh.blocks:
-        if group not in used:
-            raise CaseError(
-                f"no material uses the block group {group!r}. Add it to 'blocks' of [fluid] or of a [[solid]], or "
-                "remove it from the mesh",
-                f"mesh.blocks.{group}",
-            )
     _check_solid_names(case)
 
 

@@ -74,7 +74,7 @@ class EdgeOwners:
         """Say where the edge lies, for messages: "is inside the fluid"."""
         owners = self.of.get(edge, ())
         if not owners:
-            return "is not an edge of any block"
+            return "is not an edge of a block with a material"
         if len(owners) == 1:
             return f"belongs to {owners[0]} alone"
         first, second = owners[:2]

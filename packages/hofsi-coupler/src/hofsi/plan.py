@@ -96,6 +96,7 @@ def plan(case: Case) -> Plan:
     meshes = _meshes(case)
     built = [*_fluid(case, meshes), *_solid(case, meshes), *_coupling(case, meshes), *_time(case), *_output(case)]
     skipped = [
+        *_without_material(case),
         *_without_bodies(case),
         *_without_motion(case),
         *_without_iteration(case),
@@ -103,6 +104,12 @@ def plan(case: Case) -> Plan:
         *_unused_tables(case),
     ]
     return Plan(tuple(built), tuple(skipped))
+
+
+def _without_material(case: Case) -> list[Item]:
+    """Block groups that belong to nothing."""
+    used = {group for solid in case.solids for group in solid.blocks} | set(case.fluid.blocks if case.fluid else ())
+    return [Item(f"blocks {group!r}", "no material uses them") for group in case.mesh.blocks if group not in used]
 
 
 def _coupled(case: Case) -> bool:

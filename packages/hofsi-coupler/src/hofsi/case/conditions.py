@@ -1,0 +1,150 @@
+"""Boundary conditions of fluid and solid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from hoblock.expressions import Expression
+
+__all__ = [
+    "Displacement",
+    "DoNothing",
+    "FluidCondition",
+    "Free",
+    "NoSlip",
+    "Pressure",
+    "Roller",
+    "Slip",
+    "SolidCondition",
+    "Traction",
+    "Velocity",
+]
+
+
+@dataclass(frozen=True)
+class Velocity:
+    """Given fluid velocity, by component.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Names of the mesh's edges.
+    x, y : Expression of x, y, t, or None
+        None leaves the component free; at least one is given.
+    traction_x, traction_y : Expression of x, y, t, or None
+        Component of σ·n where the velocity component is free; None means 0.
+    place : str
+    """
+
+    on: tuple[str, ...]
+    x: Expression | None
+    y: Expression | None
+    traction_x: Expression | None = None
+    traction_y: Expression | None = None
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class NoSlip:
+    """The fluid has the velocity of the wall: zero, or that of a moving boundary."""
+
+    on: tuple[str, ...]
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """u·n = w·n with the mesh velocity w, and no tangential traction."""
+
+    on: tuple[str, ...]
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Given traction.
+
+    Of a fluid: σ·n. Of a solid: force per unit reference length, of fixed direction.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Names of the mesh's edges.
+    x, y : Expression of x, y, t
+    place : str
+    """
+
+    on: tuple[str, ...]
+    x: Expression
+    y: Expression
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """Given pressure: the traction -p n.
+
+    Of a fluid: σ·n = -p n. Of a solid: a follower load, per unit current length along the current normal.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Names of the mesh's edges.
+    value : Expression of x, y, t
+    place : str
+    """
+
+    on: tuple[str, ...]
+    value: Expression
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class DoNothing:
+    """μ ∂u/∂n - p n = 0."""
+
+    on: tuple[str, ...]
+    place: str = ""
+
+
+FluidCondition: TypeAlias = Velocity | NoSlip | Slip | Traction | Pressure | DoNothing
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """Given displacement of a solid, by component; ``fixed`` in a scene is 0 in both.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Names of the mesh's edges.
+    x, y : Expression of x, y (reference), t, or None
+        None leaves the component free, without traction; at least one is given.
+    place : str
+    """
+
+    on: tuple[str, ...]
+    x: Expression | None
+    y: Expression | None
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Roller:
+    """d·n = 0 with the reference normal n, and no tangential traction."""
+
+    on: tuple[str, ...]
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class Free:
+    """Nothing acts on the solid's edges."""
+
+    on: tuple[str, ...]
+    place: str = ""
+
+
+SolidCondition: TypeAlias = Displacement | Roller | Traction | Pressure | Free

@@ -1,0 +1,126 @@
+"""Materials with their boundary conditions, and prescribed motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+if TYPE_CHECKING:
+    from hoblock.expressions import Expression
+    from hofsi.case.conditions import FluidCondition, SolidCondition
+    from hofsi.case.settings import CouplingSettings
+
+__all__ = [
+    "Fluid",
+    "Motion",
+    "Solid",
+    "VectorExpression",
+]
+
+
+VectorExpression: TypeAlias = "tuple[Expression, Expression]"
+
+
+@dataclass(frozen=True)
+class Fluid:
+    """An incompressible Newtonian fluid.
+
+    Attributes
+    ----------
+    density : float
+        Positive.
+    viscosity : float
+        Dynamic, positive.
+    blocks : tuple of str
+        Block groups of the mesh.
+    boundaries : tuple of FluidCondition
+        Exactly one for each outer edge that is not shared with a solid.
+    model : {"navier-stokes", "stokes"}
+    convection : {"auto", "newton", "picard", "extrapolated"}
+        "auto" leaves the choice to the solver.
+    body_force : pair of Expression of x, y, t, or None
+        Per unit volume, gravity included; None is zero.
+    initial_velocity : pair of Expression of x, y, or None
+        None is zero.
+    place : str
+    """
+
+    density: float
+    viscosity: float
+    blocks: tuple[str, ...]
+    boundaries: tuple[FluidCondition, ...]
+    model: Literal["navier-stokes", "stokes"] = "navier-stokes"
+    convection: Literal["auto", "newton", "picard", "extrapolated"] = "auto"
+    body_force: VectorExpression | None = None
+    initial_velocity: VectorExpression | None = None
+    place: str = "fluid"
+
+    def extrapolates(self, coupling: CouplingSettings | None) -> bool:
+        """Whether a time step extrapolates the convecting velocity, so that its equations are linear.
+
+        Parameters
+        ----------
+        coupling : CouplingSettings or None
+            None without coupling. If every coupling iteration has a mesh of its own, "auto" iterates on convection too.
+        """
+        if self.convection == "auto":
+            return coupling is None or coupling.geometry == "extrapolated"
+        return self.convection == "extrapolated"
+
+
+@dataclass(frozen=True)
+class Solid:
+    """An elastic solid.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the solids.
+    density, youngs_modulus : float
+        Positive.
+    poissons_ratio : float
+        In (-1, 0.5).
+    blocks : tuple of str
+        Block groups of the mesh.
+    boundaries : tuple of SolidCondition
+        Exactly one for each dry outer edge; on edges shared with the fluid at most one traction or pressure.
+    model : {"st-venant-kirchhoff", "linear"}
+    plane : {"strain", "stress"}
+    body_force : pair of Expression of x, y (reference), t, or None
+        Per unit reference volume, gravity included; None is zero.
+    initial_displacement, initial_velocity : pair of Expression of x, y (reference), or None
+        None is zero.
+    place : str
+    """
+
+    name: str
+    density: float
+    youngs_modulus: float
+    poissons_ratio: float
+    blocks: tuple[str, ...]
+    boundaries: tuple[SolidCondition, ...]
+    model: Literal["st-venant-kirchhoff", "linear"] = "st-venant-kirchhoff"
+    plane: Literal["strain", "stress"] = "strain"
+    body_force: VectorExpression | None = None
+    initial_displacement: VectorExpression | None = None
+    initial_velocity: VectorExpression | None = None
+    place: str = "solid[0]"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Outer edges of the fluid that move as given.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Names of the mesh's edges.
+    x, y : Expression of x, y (reference), t
+        Displacement.
+    place : str
+    """
+
+    on: tuple[str, ...]
+    x: Expression
+    y: Expression
+    place: str = ""
