@@ -241,6 +241,8 @@ def test_an_interrupted_process_writes_everything_and_returns_130(flap: str, sce
         text=True,
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
+        # A shell that runs the tests in the background makes them, and their children, ignore SIGINT.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     limit = time.monotonic() + 60.0
     while lines_of(folder / "quantities.csv") < 4 and time.monotonic() < limit and process.poll() is None:
