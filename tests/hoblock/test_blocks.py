@@ -92,12 +92,12 @@ def test_moving_many_times_does_not_nest_displacements():
     there, back = np.array(structure.vertices), np.array(structure.vertices)
     there[[1, 2]] += [(0.2, 0.1), (-0.1, 0.3)]
     moved = structure
-    for _ in range(5):
-        moved = moved.moved(there).moved(back)
+    for k in range(5):
+        moved = moved.moved((1.0 + 0.1 * k) * there)
     assert isinstance(moved.curves[outer], Displaced)
     assert isinstance(moved.curves[outer].curve, Arc)
     t = np.linspace(0, 1, 5)
-    np.testing.assert_allclose(moved.curves[outer](t), structure.curves[outer](t), atol=1e-15)
+    np.testing.assert_allclose(moved.moved(back).curves[outer](t), structure.curves[outer](t), atol=1e-14)
 
 
 def test_moved_takes_new_curves():

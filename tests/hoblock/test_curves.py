@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hoblock.curves import Arc, Displaced, NodalCurve, Parametric, Reversed, reverse
+from hoblock.curves import Arc, Displaced, NodalCurve, Parametric, Reversed, reverse, with_ends
 from hoblock.errors import CurveError
 from hoblock.reference import gauss_lobatto
 
@@ -111,3 +111,30 @@ def test_nodal_curves_need_an_order_and_finite_nodes():
         NodalCurve(np.zeros((5, 2)), 0)
     with pytest.raises(CurveError, match=r"nodal curve: points\[1\] is \[nan, 0.0\]; expected finite coordinates"):
         NodalCurve(np.array([(0, 0), (np.nan, 0), (1, 0)]), 2)
+
+
+def on_circle(angle):
+    return np.array([2.0 + 3.0 * np.cos(angle), 1.0 + 3.0 * np.sin(angle)])
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0.3, 1.1), (1.1, 0.3), (3.0, 3.5), (0.2, 5.5)])
+@pytest.mark.parametrize("turn", [Reversed, None])
+def test_an_arc_whose_ends_slide_along_its_circle_is_cut_anew(start, stop, turn):
+    arc = Arc((2.0, 1.0), 3.0, start, stop - start)
+    curve, old = (arc, (start, stop)) if turn is None else (Reversed(arc), (stop, start))
+    new = old[0] + 0.1, old[1] - 0.05
+    ends = on_circle(new[0]), on_circle(new[1])
+    moved = with_ends(curve, tuple(end - on_circle(angle) for end, angle in zip(ends, old, strict=True)), ends)
+    t = np.linspace(0.0, 1.0, 9)
+    np.testing.assert_allclose(np.hypot(*(moved(t) - [2.0, 1.0]).T), 3.0, rtol=1e-14)
+    np.testing.assert_allclose(
+        moved(t), on_circle(new[0] + (new[1] - new[0]) * t[:, None].T).reshape(2, -1).T, atol=1e-13
+    )
+
+
+def test_an_arc_whose_end_leaves_its_circle_is_displaced():
+    arc = Arc((0.0, 0.0), 1.0, 0.0, 1.0)
+    ends = np.array([1.1, 0.0]), arc(np.array([1.0]))[0]
+    moved = with_ends(arc, (np.array([0.1, 0.0]), np.zeros(2)), ends)
+    assert isinstance(moved, Displaced)
+    np.testing.assert_allclose(moved(np.array([0.0, 1.0])), ends)

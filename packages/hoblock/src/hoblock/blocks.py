@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import topology_checks as checks
-from hoblock.curves import Curve, Displaced, NodalCurve, reverse
+from hoblock.curves import Curve, NodalCurve, reverse, with_ends
 from hoblock.errors import CurveError, GradingError, TopologyError
 from hoblock.grading import Grading, Uniform, node_parameters
 from hoblock.grading import Reversed as ReversedGrading
@@ -135,7 +135,8 @@ class BlockStructure:
         vertices : ndarray, shape (n, 2)
         curves : mapping of edge to Curve, optional
             New geometry of some edges, in the topology's direction; it must meet the new vertices. A curved edge that
-            is not listed keeps its shape, its ends displaced with its vertices (linear blending).
+            is not listed keeps its shape, its ends displaced with its vertices (linear blending); an arc whose
+            vertices have moved along its circle is cut anew from it.
 
         Raises
         ------
@@ -165,12 +166,7 @@ class BlockStructure:
                 if isinstance(curve, NodalCurve):
                     result[edge] = self._displaced_nodes(edge, curve, shift)
                     continue
-                x, y = (float(value) for value in shift[first])
-                u, v = (float(value) for value in shift[second])
-                if isinstance(curve, Displaced):  # keep one level of blending, however often the structure moves
-                    x, y, u, v = x + curve.first[0], y + curve.first[1], u + curve.second[0], v + curve.second[1]
-                    curve = curve.curve
-                curve = Displaced(curve, (x, y), (u, v))
+                curve = with_ends(curve, (shift[first], shift[second]), (vertices[first], vertices[second]))
             result[edge] = curve
         result.update(replaced)
         return BlockStructure(self.topology, vertices, result, self.gradings)

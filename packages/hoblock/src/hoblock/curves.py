@@ -14,7 +14,7 @@ from hoblock.reference import gauss_lobatto, lagrange
 
 Array = NDArray[np.float64]
 
-__all__ = ["Arc", "Curve", "Displaced", "NodalCurve", "Parametric", "Reversed", "reverse"]
+__all__ = ["Arc", "Curve", "Displaced", "NodalCurve", "Parametric", "Reversed", "reverse", "with_ends"]
 
 
 class Curve(Protocol):
@@ -81,6 +81,19 @@ class Arc:
         # The arc runs counter-clockwise exactly if `middle` is right of the chord.
         opening = (stop - start) % (2.0 * np.pi) if cross > 0.0 else -((start - stop) % (2.0 * np.pi))
         return Arc((float(center[0]), float(center[1])), radius, start, opening)
+
+    def cut(self, first: Array, second: Array) -> Arc | None:
+        """Return the arc of the same circle between ends near the present ones, or None if they are not on it."""
+        offsets = np.stack([first, second]) - np.array(self.center)
+        if np.abs(np.hypot(offsets[:, 0], offsets[:, 1]) - self.radius).max() > 1e-9 * self.radius:
+            return None
+        angles = np.arctan2(offsets[:, 1], offsets[:, 0])
+        turned = angles - (self.start, self.start + self.opening)
+        turned -= 2.0 * np.pi * np.round(turned / (2.0 * np.pi))  # the nearer way round
+        opening = self.opening + float(turned[1] - turned[0])
+        if opening * self.opening <= 0.0:
+            return None
+        return Arc(self.center, self.radius, self.start + float(turned[0]), opening)
 
     def __call__(self, t: Array) -> Array:
         """Points at the parameters ``t``."""
@@ -172,6 +185,32 @@ def reverse(curve: Curve) -> Curve:
     if isinstance(curve, NodalCurve):
         return NodalCurve(curve.points[::-1], curve.order)
     return curve.curve if isinstance(curve, Reversed) else Reversed(curve)
+
+
+def with_ends(curve: Curve, shifts: tuple[Array, Array], ends: tuple[Array, Array]) -> Curve:
+    """Return a curve for an edge whose vertices have moved.
+
+    An arc whose new ends lie on its circle is cut anew from the circle, so that a vertex can slide along it. Any other
+    curve keeps its shape, with the displacement of the ends blended linearly along it.
+
+    Parameters
+    ----------
+    curve : Curve
+    shifts : pair of ndarray, shape (2,)
+        Displacements of the ends.
+    ends : pair of ndarray, shape (2,)
+        New positions of the ends.
+    """
+    first, second = shifts
+    if isinstance(curve, Displaced):  # keep one level of blending, however often the structure moves
+        first, second = first + np.array(curve.first), second + np.array(curve.second)
+        curve = curve.curve
+    arc = curve.curve if isinstance(curve, Reversed) else curve
+    if isinstance(arc, Arc):
+        cut = arc.cut(*(ends if arc is curve else ends[::-1]))
+        if cut is not None:
+            return cut if arc is curve else Reversed(cut)
+    return Displaced(curve, (float(first[0]), float(first[1])), (float(second[0]), float(second[1])))
 
 
 @dataclass(frozen=True)
