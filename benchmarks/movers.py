@@ -15,7 +15,7 @@ from _result import Result, fastest, parser, report
 from numpy.typing import NDArray
 
 from hoblock import BlockStructure, NodalCurve, generate, regenerate
-from hoblock.generate import layout
+from hoblock.layout import layout
 from hoblock.movers import AngleOptimisation, Mover, PseudoSolid
 from hoblock.quality import invalid_elements
 

@@ -4,8 +4,9 @@ import pytest
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Arc, Displaced, NodalCurve, Parametric
 from hoblock.errors import CurveError, GradingError, TopologyError
-from hoblock.generate import generate, layout
+from hoblock.generate import generate
 from hoblock.grading import Exponential, Reversed, Uniform
+from hoblock.layout import layout
 
 VERTICES = {"a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (0, 1), "e": (1, 1), "f": (2, 1)}
 BLOCKS = {"left": [("a", "b", "e", "d")], "right": [("b", "c", "f", "e")]}

@@ -7,9 +7,10 @@ from hoblock.build import build_structure
 from hoblock.curves import Arc
 from hoblock.errors import CurveError, ExpressionError, GradingError, TopologyError
 from hoblock.expressions import compile_expression
-from hoblock.generate import generate, layout
+from hoblock.generate import generate
 from hoblock.grading import Exponential, Reversed, Uniform
 from hoblock.io.scene import load_mesh_scene
+from hoblock.layout import layout
 from hoblock.scene import ArcAbout, ArcThrough, CountScene, CurveScene, Formula, GradingScene, MeshScene
 
 # A strip of three blocks: 0–1–2–3 below, 4–5–6–7 above.

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from hoblock.blocks import BlockStructure
-from hoblock.generate import generate, layout
+from hoblock.generate import generate
 from hoblock.grading import Exponential
+from hoblock.layout import layout
 from hoblock.numbering import corner_nodes, side_nodes
 from hoblock.quality import det_jacobian
 from hoblock.reference import gauss_lobatto, tensor_basis, tensor_gradient

@@ -10,8 +10,9 @@ import pytest
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Arc, NodalCurve, Parametric
 from hoblock.errors import CurveError, GradingError, InvalidMeshError
-from hoblock.generate import changed_blocks, generate, layout, raise_if_invalid, regenerate
+from hoblock.generate import changed_blocks, generate, raise_if_invalid, regenerate
 from hoblock.grading import Exponential, Quadratic
+from hoblock.layout import layout
 from hoblock.mesh import QuadMesh
 from hoblock.numbering import side_nodes
 from hoblock.quality import det_jacobian, scaled_jacobian

@@ -11,8 +11,9 @@ import pytest
 
 from hoblock.blocks import BlockStructure
 from hoblock.curves import NodalCurve
-from hoblock.generate import generate, layout, regenerate
+from hoblock.generate import generate, regenerate
 from hoblock.grading import Exponential
+from hoblock.layout import layout
 from hoblock.mesh import QuadMesh
 from hoblock.quality import invalid_elements
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hoblock.blocks import BlockStructure
 from hoblock.errors import MeshFileError
 from hoblock.extras import import_extra
-from hoblock.generate import layout
+from hoblock.layout import layout
 from hoblock.mesh import QuadMesh
 from hoblock.numbering import side_nodes
 from hoblock.quality import equiangular_skewness, jacobian_ratio, scaled_jacobian

@@ -17,7 +17,8 @@ from hoblock import (
     regenerate,
 )
 from hoblock.curves import NodalCurve
-from hoblock.generate import layout, raise_if_invalid
+from hoblock.generate import raise_if_invalid
+from hoblock.layout import layout
 from hoblock.movers import Mover
 from hofsi.errors import MeshMotionError
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import QuadMesh
-from hoblock.generate import layout
+from hoblock.layout import layout
 from hofsi import case
 from hofsi.build import FluidPart, Problem, SolidPart
 from hofsi.errors import CaseError

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import BlockStructure
-from hoblock.generate import layout
+from hoblock.layout import layout
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import BlockStructure, QuadMesh
-from hoblock.generate import layout
+from hoblock.layout import layout
 from hoblock.numbering import side_nodes
 from hoblock.quality import scaled_jacobian
 from hofsi.build import Problem
