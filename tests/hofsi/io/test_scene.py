@@ -164,3 +164,20 @@ def test_a_wrong_override_names_the_file(scene_file: Path) -> None:
 def test_data_may_come_from_elsewhere() -> None:
     with pytest.raises(SceneError, match=r"^memory: mesh: the required key is missing"):
         read_case({"fluid": {}}, "memory")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "steps", "end"),
+    [(["time.steps=3"], 3, 0.3), (["time.end=0.4"], 4, 0.4), (["time.steps=3", "time.dt=0.2"], 3, 0.6)],
+)
+def test_an_override_takes_the_place_of_what_excludes_it(
+    scene_file: Path, overrides: list[str], steps: int, end: float
+) -> None:
+    time = load_case(scene_file, overrides).time
+    assert isinstance(time, Unsteady)
+    assert (time.steps, time.end) == (steps, pytest.approx(end))
+
+
+def test_two_overrides_that_exclude_each_other_are_an_error(scene_file: Path) -> None:
+    with pytest.raises(CaseError, match="both 'end' and 'steps'"):
+        load_case(scene_file, ["time.steps=3", "time.end=1"])

@@ -243,10 +243,12 @@ def _coupling(case: Case, meshes: _Meshes) -> Iterator[Item]:
 def _time(case: Case) -> Iterator[Item]:
     if isinstance(case.time, Unsteady):
         time = case.time
+        last = time.step(time.steps)[1]
+        shorter = "" if last == time.dt else f", the last of {last:g},"
         order = "first order" if time.steps == 1 else "second order (the first step: of first)"
         yield Item(
             "time",
-            f"{_number(time.steps, 'step')} of {time.dt:g} from {time.start:g} to {time.end:g}, "
+            f"{_number(time.steps, 'step')} of {time.dt:g}{shorter} from {time.start:g} to {time.end:g}, "
             f"backward differences of {order}",
         )
     else:

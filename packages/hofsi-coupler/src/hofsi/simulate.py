@@ -39,10 +39,10 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
     state = problem.march.initial(times.start)
     sizes: list[float] = []
     for step in range(1, times.steps + 1):
-        time = times.start + step * times.dt
-        sizes = [times.dt, *sizes][:_STEPS]
+        time, size = times.step(step)
+        sizes = [size, *sizes][:_STEPS]
         state, coupling = problem.march.step(state, sizes, time)
-        yield _record(step, time, times.dt, state, coupling)
+        yield _record(step, time, size, state, coupling)
 
 
 def _record(step: int, time: float, dt: float, state: State, coupling: CouplingRecord | None) -> StepRecord:

@@ -91,14 +91,14 @@ class Steady:
 
 @dataclass(frozen=True)
 class Unsteady:
-    """Equal time steps.
+    """Equal time steps, but for a last one that may be shorter to land on the end.
 
     Attributes
     ----------
     dt : float
         Positive.
     start, end : float
-        ``end = start + steps dt``.
+        ``start + (steps - 1) dt < end <= start + steps dt`` but for rounding.
     steps : int
         At least 1.
     """
@@ -107,6 +107,13 @@ class Unsteady:
     start: float
     end: float
     steps: int
+
+    def step(self, number: int) -> tuple[float, float]:
+        """End and size of a step, counted from 1."""
+        end = self.start + number * self.dt
+        if number < self.steps or end - self.end <= 1e-6 * self.dt:
+            return end, self.dt
+        return self.end, self.end - (self.start + (number - 1) * self.dt)
 
 
 TimeSettings: TypeAlias = Steady | Unsteady

@@ -34,6 +34,14 @@ _TABLES = (
     "quantities",
 )
 
+_RIVALS = {
+    "steps": ("end", "steady"),
+    "end": ("steps", "steady"),
+    "dt": ("steady",),
+    "steady": ("dt", "end", "steps", "start"),
+}
+"""Keys of ``[time]`` that exclude others."""
+
 
 def load_case(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Case:
     """Read a scene file.
@@ -43,7 +51,8 @@ def load_case(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Ca
     path : path-like
         The TOML file.
     overrides : sequence of str, optional
-        Changes such as ``"time.dt=0.01"``, see `hoblock.io.toml.apply_overrides`.
+        Changes such as ``"time.dt=0.01"``, see `hoblock.io.toml.apply_overrides`. One of ``time.steps``, ``time.end``,
+        ``time.dt`` and ``time.steady`` takes the place of keys in the file that exclude it.
 
     Returns
     -------
@@ -58,8 +67,21 @@ def load_case(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Ca
     """
     data = read_toml(path)
     with naming_file(path):
-        data = apply_overrides(data, overrides)
+        data = _without_rivals(apply_overrides(data, overrides), overrides)
     return read_case(data, os.fspath(path))
+
+
+def _without_rivals(data: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
+    """Drop keys of ``[time]`` that exclude a key set by an override: the later word counts."""
+    asked = {override.split("=", 1)[0].strip() for override in overrides}
+    time = data.get("time")
+    if isinstance(time, dict):
+        for key, rivals in _RIVALS.items():
+            if f"time.{key}" in asked and time.get(key) is not False:
+                for rival in rivals:
+                    if f"time.{rival}" not in asked:
+                        time.pop(rival, None)
+    return data
 
 
 def read_case(data: Mapping[str, Any], file: str) -> Case:

@@ -107,14 +107,12 @@ def _until_end(table: Table, dt: float, start: float) -> Unsteady:
     if end <= start:
         raise CaseError(f"got {end:g}; expected an end after the start, {start:g}", table.place_of("end"))
     steps = (end - start) / dt
-    if round(steps) < 1 or abs(steps - round(steps)) > _WHOLE * max(1.0, steps):
-        fitting = (end - start) / math.ceil(steps)
+    if steps < 1.0 - _WHOLE:
         raise CaseError(
-            f"got {dt:g}, which makes {steps:.6g} steps from {start:g} to {end:g}; expected a whole number. "
-            f"Use dt = {fitting:.12g}, or give steps instead of end",
+            f"got {dt:g}, longer than the time from {start:g} to {end:g}. Use dt = {end - start:.12g} or less",
             table.place_of("dt"),
         )
-    return Unsteady(dt, start, end, round(steps))
+    return Unsteady(dt, start, end, math.ceil(steps - _WHOLE * max(1.0, steps)))
 
 
 def read_coupling(table: Table, time: TimeSettings) -> CouplingSettings:
