@@ -21,7 +21,6 @@ def test_all_errors_derive_from_one_class() -> None:
     [
         ("HofsiError", 1),
         ("CaseError", 2),
-        ("RestartError", 2),
         ("ConvergenceError", 3),
         ("NewtonError", 3),
         ("LinearSolverError", 3),

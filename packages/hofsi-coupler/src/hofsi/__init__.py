@@ -31,7 +31,6 @@ if TYPE_CHECKING:
         LinearSolverError,
         MeshMotionError,
         NewtonError,
-        RestartError,
     )
     from hofsi.io.scene import load_case, read_case
     from hofsi.quantities import evaluators
@@ -49,7 +48,6 @@ _MODULES = {
     "MeshMotionError": "hofsi.errors",
     "NewtonError": "hofsi.errors",
     "Problem": "hofsi.build",
-    "RestartError": "hofsi.errors",
     "Result": "hofsi.run",
     "State": "hofsi.records",
     "StepRecord": "hofsi.records",
@@ -69,7 +67,6 @@ __all__ = [
     "MeshMotionError",
     "NewtonError",
     "Problem",
-    "RestartError",
     "Result",
     "State",
     "StepRecord",

@@ -18,7 +18,6 @@ __all__ = [
     "LinearSolverError",
     "MeshMotionError",
     "NewtonError",
-    "RestartError",
 ]
 
 
@@ -89,9 +88,3 @@ class CouplingError(ConvergenceError):
 
 class MeshMotionError(ConvergenceError):
     """The fluid mesh cannot follow its moving boundary: an element would become invalid."""
-
-
-class RestartError(HofsiError):
-    """A restart file that cannot be read or belongs to another case."""
-
-    exit_code: ClassVar[int] = 2

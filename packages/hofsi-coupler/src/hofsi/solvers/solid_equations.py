@@ -57,7 +57,7 @@ class SolidEquations:
         count = mesh.order + 2
         table = element_table(mesh.order, count)
         geometry = element_geometry(mesh.coordinates, table)
-        self._local, self._position = local, np.argsort(local)
+        self._position = np.argsort(local)
         self._cells = mesh.cells[:, local]
         self._dN = np.ascontiguousarray(table.dN[:, local])
         self._weights = geometry.weights
