@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any
 
 from hoblock.errors import SceneError
 from hoblock.expressions import RESERVED_NAMES, compile_expression
+from hoblock.io.scene_curves import read_curve
+from hoblock.io.scene_gradings import read_grading
+from hoblock.io.scene_paths import check_paths, check_vertices, paths_on
 from hoblock.io.table import Table
 from hoblock.io.toml import apply_overrides, naming_file, read_toml
-from hoblock.io.values import describe, path_of
-from hoblock.scene import (
-    HIGHEST_ORDER,
-    ArcAbout,
-    ArcThrough,
-    CountScene,
-    CurveScene,
-    Formula,
-    GradingScene,
-    MeshScene,
-    Path,
-    Quad,
-)
-from hoblock.spelling import listing, suggestion
+from hoblock.io.values import describe
+from hoblock.scene import HIGHEST_ORDER, CountScene, MeshScene, Path, Quad
 
 __all__ = ["constants_of", "load_mesh_scene", "read_mesh_scene"]
 
@@ -88,9 +79,9 @@ def read_mesh_scene(data: Mapping[str, Any], file: str) -> MeshScene:
             vertices=MappingProxyType(vertices),
             blocks=MappingProxyType(blocks),
             edges=MappingProxyType(edges),
-            curves=tuple(_curve(table, vertices, edges, constants) for table in mesh.tables("curve")),
+            curves=tuple(read_curve(table, vertices, edges, constants) for table in mesh.tables("curve")),
             counts=tuple(_count(table, vertices, edges) for table in mesh.tables("count")),
-            gradings=tuple(_grading(table, vertices, edges) for table in mesh.tables("grading")),
+            gradings=tuple(read_grading(table, vertices, edges) for table in mesh.tables("grading")),
             elements=mesh.integer("elements", 1, minimum=1),
             title=title,
             file=file,
@@ -171,7 +162,7 @@ def _blocks(table: Table, vertices: Mapping[str, Any]) -> dict[str, tuple[Quad, 
 def _quad(value: object, vertices: Mapping[str, Any], place: str) -> Quad:
     if not isinstance(value, list) or len(value) != 4 or not all(isinstance(name, str) for name in value):
         raise SceneError(f"got {describe(value)}; expected the names of four vertices, counter-clockwise", place)
-    _check_vertices(value, vertices, place)
+    check_vertices(value, vertices, place)
     a, b, c, d = value
     twice = [name for name in value if value.count(name) > 1]
     if twice:
@@ -183,97 +174,11 @@ def _edges(table: Table, vertices: Mapping[str, Any]) -> dict[str, tuple[Path, .
     edges = {}
     for name in table:
         edges[name] = table.paths(name)
-        _check_paths(edges[name], vertices, table.place_of(name))
+        check_paths(edges[name], vertices, table.place_of(name))
     return edges
 
 
-def _on(table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]]) -> tuple[Path, ...]:
-    """Read the paths at ``on``: paths, the names of named edges, or a list of both."""
-    place = table.place_of("on")
-    asked = table.raw("on")
-    if isinstance(asked, str):
-        return _named(asked, edges, place)
-    lone_path = isinstance(asked, list) and all(isinstance(part, str) and part in vertices for part in asked)
-    if lone_path or not isinstance(asked, list):
-        table.paths("on")  # says what is wrong with it
-    found: list[Path] = []
-    for k, part in enumerate(asked):
-        where = f"{place}[{k}]"
-        if isinstance(part, str):
-            found += _named(part, edges, where)
-        else:
-            path = path_of(part, where)
-            _check_vertices(path, vertices, where)
-            found.append(path)
-    return tuple(found)
-
-
-def _named(name: str, edges: Mapping[str, tuple[Path, ...]], place: str) -> tuple[Path, ...]:
-    if name not in edges:
-        raise SceneError(
-            f"got {name!r}. {suggestion(name, edges)}Expected a list of paths such as "
-            f'[["a", "b"]] or one of the names of [mesh.edges]: {listing(edges)}',
-            place,
-        )
-    return edges[name]
-
-
-def _check_paths(paths: Iterable[Path], vertices: Mapping[str, Any], place: str) -> None:
-    for k, path in enumerate(paths):
-        _check_vertices(path, vertices, f"{place}[{k}]")
-
-
-def _check_vertices(names: Iterable[str], vertices: Mapping[str, Any], place: str) -> None:
-    for name in names:
-        if name not in vertices:
-            raise SceneError(
-                f"unknown vertex {name!r}. {suggestion(name, vertices)}Expected names from [mesh.vertices]", place
-            )
-
-
-def _curve(
-    table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]], constants: Mapping[str, float]
-) -> CurveScene:
-    on = _on(table, vertices, edges)
-    kind = table.string("kind", choices=("arc", "parametric"))
-    shape = _arc(table, constants) if kind == "arc" else _formula(table, constants)
-    table.finish()
-    return CurveScene(on, shape, table.place)
-
-
-def _arc(table: Table, constants: Mapping[str, float]) -> ArcAbout | ArcThrough:
-    about, through = table.has("center"), table.has("through")
-    if about == through:
-        got = "both 'center' and 'through'" if about else "neither 'center' nor 'through'"
-        raise SceneError(f"an arc with {got}; expected exactly one of them", table.place)
-    if about:
-        return ArcAbout(table.pair("center", constants=constants))
-    return ArcThrough(table.pair("through", constants=constants))
-
-
-def _formula(table: Table, constants: Mapping[str, float]) -> Formula:
-    return Formula(table.expression("x", ("s",), constants), table.expression("y", ("s",), constants))
-
-
 def _count(table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]]) -> CountScene:
-    count = CountScene(_on(table, vertices, edges), table.integer("elements", minimum=1), table.place)
+    count = CountScene(paths_on(table, vertices, edges), table.integer("elements", minimum=1), table.place)
     table.finish()
     return count
-
-
-def _grading(table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]]) -> GradingScene:
-    on = _on(table, vertices, edges)
-    name = table.string("kind", choices=("uniform", "quadratic", "cubic", "exponential"))
-    kind: Literal["uniform", "quadratic", "cubic", "exponential"]
-    parameter = 0.0
-    match name:
-        case "quadratic":
-            kind, parameter = "quadratic", table.number("m", above=-1.0, below=1.0)
-        case "cubic":
-            kind, parameter = "cubic", table.number("m", minimum=0.0, below=1.0)
-        case "exponential":
-            kind, parameter = "exponential", table.number("a", minimum=-50.0, maximum=50.0)
-        case _:
-            kind = "uniform"
-    table.finish()
-    return GradingScene(on, kind, parameter, table.place)

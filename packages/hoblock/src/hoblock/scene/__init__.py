@@ -1,0 +1,24 @@
+"""What a scene says about its mesh: plain data, not yet a mesh.
+
+The places (``"mesh.curve[3]"``) tell where in the scene each entry stands, for errors that only show when
+the blocks are built.
+"""
+
+from hoblock.scene.curves import ArcAbout, ArcThrough, CurveScene, Formula, Shape
+from hoblock.scene.gradings import GradingScene
+from hoblock.scene.mesh import HIGHEST_ORDER, CountScene, MeshScene
+from hoblock.scene.paths import Path, Quad
+
+__all__ = [
+    "HIGHEST_ORDER",
+    "ArcAbout",
+    "ArcThrough",
+    "CountScene",
+    "CurveScene",
+    "Formula",
+    "GradingScene",
+    "MeshScene",
+    "Path",
+    "Quad",
+    "Shape",
+]
