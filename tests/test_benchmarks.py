@@ -15,6 +15,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 TINY = {
     "fluid_work_precision": ["--orders", "2", "4", "--k", "1"],
     "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],
+    "mesh_scaling": ["--nodes", "2000", "9000", "--order", "2", "--repeats", "2"],
     "movers": ["--steps", "6", "--order", "2", "--elements", "1", "--repeats", "2"],
 }
 

@@ -233,8 +233,8 @@ def test_invalid_meshes_name_block_element_and_place(layouts):
     structure = layouts.square(counts=2, curves={("a", "b"): layouts.bump((0, 0), (1, 0), 1.4)})
     with pytest.raises(
         InvalidMeshError,
-        match=r"4 of 4 elements have det J <= 0 somewhere\. Worst: element \d in "
-        r"blocks\.body\[0\] \(a, b, c, d\), det J = -.* at \(xi, eta\) = .*, \(x, y\) = .*\. The angle",
+        match=r"4 of 4 elements are invalid: det J <= 0 somewhere\. Worst: element \d in "
+        r"blocks\.body\[0\] \(a, b, c, d\), det J = -.* at \(xi, eta\) = .*, \(x, y\) = .*\. The curve of edge a–b",
     ):
         generate(structure, 4)
     mesh = generate(structure, 4, check=False)
@@ -246,7 +246,7 @@ def test_inverted_after_a_motion(layouts):
     structure = layouts.square()
     vertices = np.array(structure.vertices)
     vertices[:, 0] *= -1
-    with pytest.raises(InvalidMeshError, match=r"1 of 1 elements .* The element is inverted"):
+    with pytest.raises(InvalidMeshError, match=r"1 of 1 elements .* The block is inverted"):
         generate(structure.moved(vertices), 2)
 
 

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -54,8 +56,8 @@ def test_product_form_is_the_form_node_by_node(rng):
     for u_side, v_end in ((bottom, 0), (top, -1)):
         left[:, v_end], right[:, v_end] = u_side[:, 0], u_side[:, -1]
     product = TransfiniteWeights.from_parameters(u, u, v, v)
-    assert product.u.shape == (4, 6)
-    full = TransfiniteWeights(*(np.array(w) for w in np.broadcast_arrays(u[:, None, 1:-1], v[:, 1:-1, None])))
+    assert product.inner is None
+    full = dataclasses.replace(product, inner=tuple(np.broadcast_arrays(u[:, None, 1:-1], v[:, 1:-1, None])))
     np.testing.assert_allclose(interior_points(product, *edges), interior_points(full, *edges), atol=1e-13)
 
 
@@ -74,7 +76,7 @@ def test_exact_on_parallelograms_with_different_gradings_on_opposite_edges(rng):
 
     sides = parameters(rng, 2, 4), parameters(rng, 2, 4), parameters(rng, 2, 3), parameters(rng, 2, 3)
     weights = TransfiniteWeights.from_parameters(*sides)
-    assert weights.u.shape == (2, 3, 4)
+    assert weights.inner[0].shape == (2, 3, 4)
     u, v = reference_positions(*sides)
     points = interior_points(weights, *edges_of(affine, *sides))
     np.testing.assert_allclose(points, affine(u, v)[:, 1:-1, 1:-1], atol=1e-14)
@@ -89,3 +91,20 @@ def test_selected_blocks(same, rng):
     some = np.array([3, 1])
     part = interior_points(weights.select(some), *(edge[some] for edge in edges))
     np.testing.assert_array_equal(part, interior_points(weights, *edges)[some])
+
+
+@pytest.mark.parametrize("differing", ["u", "v"])
+def test_product_form_with_one_differing_pair_is_the_form_node_by_node(differing, rng):
+    bottom, left = parameters(rng, 4, 6), parameters(rng, 4, 3)
+    top = parameters(rng, 4, 6) if differing == "u" else bottom
+    right = parameters(rng, 4, 3) if differing == "v" else left
+    edges = [rng.standard_normal((4, k, 2)) for k in (8, 8, 5, 5)]
+    for side, end in ((edges[0], 0), (edges[1], -1)):
+        edges[2][:, end], edges[3][:, end] = side[:, 0], side[:, -1]
+    product = TransfiniteWeights.from_parameters(bottom, top, left, right)
+    assert product.inner is None
+    positions = reference_positions(bottom[:, 1:-1], top[:, 1:-1], left[:, 1:-1], right[:, 1:-1])
+    full = dataclasses.replace(product, inner=positions)
+    np.testing.assert_allclose(interior_points(product, *edges), interior_points(full, *edges), atol=1e-13)
+    out = np.empty((4, 3, 6, 2))
+    assert interior_points(product, *edges, out) is out

@@ -1,17 +1,19 @@
-"""What does not change when blocks move: numbering, connectivity and blending weights of the mesh of a structure."""
+"""What a structure's mesh is made from: numbering, nodes along edges, blending weights; kept while it holds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
-from hoblock.grading import Grading, node_parameters
-from hoblock.numbering import number_nodes
+from hoblock.connectivity import Connectivity, Patch, connectivity
+from hoblock.edge_shape import edge_shape
+from hoblock.errors import GradingError
+from hoblock.grading import EdgeGrading, Grading, node_parameters
 from hoblock.scene import HIGHEST_ORDER
 from hoblock.topology import BlockTopology
 from hoblock.transfinite import TransfiniteWeights
@@ -21,59 +23,94 @@ Index = NDArray[np.int64]
 
 __all__ = ["Batch", "Layout", "layout"]
 
+_KEPT_POSITIONS = 4
+"""Layouts of one structure kept where gradings depend on lengths: the last few positions of a moving mesh."""
+
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """Blocks of equal size: numbers, nodes of bottom, top, left, right, inner nodes (b, n, m), weights."""
+    """Blocks of a patch whose nodes are blended in the same way.
 
-    blocks: Index
-    sides: tuple[Index, ...]
-    inner: Index
+    Attributes
+    ----------
+    patch : Patch
+    members : ndarray
+        Places of the blocks in the patch, ascending.
+    weights : TransfiniteWeights
+    """
+
+    patch: Patch
+    members: Index
     weights: TransfiniteWeights
+
+    @property
+    def blocks(self) -> Index:
+        """Numbers of the blocks."""
+        return self.patch.blocks[self.members]
 
     def select(self, some: Index) -> Batch:
         """Return the batch of some of its blocks."""
-        sides = tuple(nodes[some] for nodes in self.sides)
-        return Batch(self.blocks[some], sides, self.inner[some], self.weights.select(some))
+        return Batch(self.patch, self.members[some], self.weights.select(some))
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Everything about a mesh that does not depend on where the blocks are.
+    """Everything about a mesh that does not depend on where the blocks are, but for gradings that keep lengths.
 
     Attributes
     ----------
-    order : int
-    cells : ndarray, shape (e, (p + 1)²)
-    node_count : int
-    block_of_cell : ndarray, shape (e,)
-    vertex_nodes : ndarray
-        Mesh node of each block vertex.
-    edge_offsets : ndarray, shape (m + 1,)
-    edge_nodes : ndarray
-        Nodes of block edge k, first to second vertex: ``edge_nodes[edge_offsets[k]:edge_offsets[k + 1]]``.
+    numbers : Connectivity
     edge_parameters : ndarray
-        Their parameters in [0, 1], gradings included.
-    cell_groups, edge_groups : mapping
-        As in `QuadMesh`.
+        Parameters in [0, 1] of ``edge_nodes``, gradings included.
+    batches : tuple of Batch
     """
 
-    order: int
-    cells: Index
-    node_count: int
-    block_of_cell: Index
-    vertex_nodes: Index
-    edge_offsets: Index
-    edge_nodes: Index
+    numbers: Connectivity
     edge_parameters: Array
-    edge_of_entry: Index
     batches: tuple[Batch, ...]
-    cell_groups: Mapping[str, Index]
-    edge_groups: Mapping[str, Index]
+
+    @property
+    def order(self) -> int:
+        """Order p of the elements."""
+        return self.numbers.order
+
+    @property
+    def cells(self) -> Index:
+        """Nodes of the elements, shape (e, (p + 1)²)."""
+        return self.numbers.cells
+
+    @property
+    def node_count(self) -> int:
+        """Number of nodes."""
+        return self.numbers.node_count
+
+    @property
+    def vertex_nodes(self) -> Index:
+        """Mesh node of each block vertex."""
+        return self.numbers.vertex_nodes
+
+    @property
+    def edge_offsets(self) -> Index:
+        """Where the nodes of each edge begin in ``edge_nodes``, shape (m + 1,)."""
+        return self.numbers.edge_offsets
+
+    @property
+    def edge_nodes(self) -> Index:
+        """Nodes of all block edges, each from its first to its second vertex."""
+        return self.numbers.edge_nodes
+
+    @property
+    def block_of_cell(self) -> Index:
+        """Block of each element, shape (e,)."""
+        return np.repeat(np.arange(len(self.numbers.cell_starts) - 1), np.diff(self.numbers.cell_starts))
 
     def nodes_of_edge(self, edge: int) -> Index:
         """Nodes of a block edge from its first to its second vertex, shape (n p + 1,)."""
         return self.edge_nodes[self.edge_offsets[edge] : self.edge_offsets[edge + 1]]
+
+    def parameters_of_edge(self, edge: int) -> Array:
+        """Their parameters in [0, 1], shape (n p + 1,)."""
+        return self.edge_parameters[self.edge_offsets[edge] : self.edge_offsets[edge + 1]]
 
 
 def layout(structure: BlockStructure, order: int) -> Layout:
@@ -90,133 +127,128 @@ def layout(structure: BlockStructure, order: int) -> Layout:
     ValueError
         If the order is none of these.
     GradingError
-        If a grading is not strictly increasing for the number of elements of its edge.
+        If a grading is not strictly increasing for the number of elements of its edge, or does not fit its length.
     """
     if isinstance(order, bool) or not isinstance(order, int | np.integer):
         raise ValueError(f"order is {order!r}; expected an integer from 1 to {HIGHEST_ORDER}.")
     if not 1 <= order <= HIGHEST_ORDER:
         raise ValueError(f"order is {order}; expected an integer >= 1 and <= {HIGHEST_ORDER}.")
-    known = _LAYOUTS.setdefault(structure.topology, {})
+    known = _FAMILIES.setdefault(structure.topology, {})
     key = (structure.gradings, int(order))
     if key not in known:
-        known[key] = _layout(structure.topology, structure.gradings, int(order))
-    return known[key]
+        known[key] = _family(structure.topology, structure.gradings, int(order), tuple(known.values()))
+    family = known[key]
+    return family.layout(structure.topology, _resolved(structure, family.to_resolve))
+
+
+@dataclass(frozen=True, eq=False)
+class _Family:
+    """Layouts of one numbering that differ by gradings which depend on lengths.
+
+    Attributes
+    ----------
+    numbers : Connectivity
+    to_resolve : tuple of int
+        Edges with such a grading.
+    known : dict
+        The last layouts by their gradings; a single one if there is nothing to resolve.
+    """
+
+    numbers: Connectivity
+    to_resolve: tuple[int, ...]
+    known: dict[tuple[Grading, ...], Layout] = field(default_factory=dict)
+
+    def layout(self, topology: BlockTopology, gradings: tuple[Grading, ...]) -> Layout:
+        """Return the layout for gradings in which nothing depends on the edge any more."""
+        if not self.to_resolve and self.known:
+            return next(iter(self.known.values()))
+        found = self.known.pop(gradings, None)
+        if found is None:
+            last = next(reversed(self.known.items()), None)
+            found = _layout(self.numbers, topology, gradings, last)
+        self.known[gradings] = found  # the latest comes last
+        while len(self.known) > _KEPT_POSITIONS:
+            del self.known[next(iter(self.known))]
+        return found
 
 
 # A layout lives as long as its topology: long studies over many structures keep none of them.
-_LAYOUTS: WeakKeyDictionary[BlockTopology, dict[tuple[tuple[Grading, ...], int], Layout]] = WeakKeyDictionary()
+_FAMILIES: WeakKeyDictionary[BlockTopology, dict[tuple[tuple[Grading | EdgeGrading, ...], int], _Family]] = (
+    WeakKeyDictionary()
+)
 
 
-def _layout(topology: BlockTopology, gradings: tuple[Grading, ...], order: int) -> Layout:
-    columns = topology.counts[topology.block_edges[:, 0]]
-    rows = topology.counts[topology.block_edges[:, 3]]
-    cell_starts = np.concatenate(([0], np.cumsum(columns * rows)))
-    corners = _element_corners(topology, columns, rows)
-    cells, node_count = number_nodes(corners, order)
-    block_nodes = [
-        _block_grid(cells[cell_starts[b] : cell_starts[b + 1]], int(columns[b]), int(rows[b]), order)
-        for b in range(len(columns))
-    ]
-    edges = _edge_nodes(topology, block_nodes)
-    parameters = _edge_parameters(topology, gradings, order)
-    vertex_nodes = np.empty(len(topology.vertex_names), dtype=np.int64)
-    vertex_nodes[topology.edges] = [(nodes[0], nodes[-1]) for nodes in edges]
-    lengths = np.array([len(nodes) for nodes in edges])
-    return Layout(
-        order,
-        cells,
-        node_count,
-        np.repeat(np.arange(len(columns)), columns * rows),
-        vertex_nodes,
-        np.concatenate(([0], np.cumsum(lengths))),
-        np.concatenate(edges),
-        np.concatenate(parameters),
-        np.repeat(np.arange(len(edges)), lengths),
-        _batches(topology, block_nodes, parameters),
-        {
-            name: np.concatenate([np.arange(cell_starts[b], cell_starts[b + 1]) for b in blocks])
-            for name, blocks in topology.block_groups.items()
-        },
-        _edge_groups(topology, columns, rows, cell_starts),
-    )
+def _family(
+    topology: BlockTopology, gradings: tuple[Grading | EdgeGrading, ...], order: int, others: tuple[_Family, ...]
+) -> _Family:
+    """Begin the layouts of some gradings; those of other gradings and the same order share their numbering."""
+    numbers = next((other.numbers for other in others if other.numbers.order == order), None)
+    to_resolve = tuple(edge for edge, grading in enumerate(gradings) if isinstance(grading, EdgeGrading))
+    return _Family(numbers or connectivity(topology, order), to_resolve)
 
 
-def _element_corners(topology: BlockTopology, columns: Index, rows: Index) -> Index:
-    """Corner identities (e, 4) of all elements, block by block."""
-    count = len(topology.vertex_names)
-    starts = count + np.concatenate(([0], np.cumsum(topology.counts - 1)))
-    total = int(starts[-1])
-    corners = []
-    for block, (vertices, sides) in enumerate(zip(topology.quads, topology.block_edges, strict=True)):
-        m, n = int(columns[block]), int(rows[block])
-        grid = np.empty((n + 1, m + 1), dtype=np.int64)
-        grid[0, 0], grid[0, -1], grid[-1, -1], grid[-1, 0] = vertices
-        inner = [np.arange(starts[s], starts[s + 1]) for s in sides]
-        grid[0, 1:-1], grid[1:-1, -1], grid[-1, 1:-1], grid[1:-1, 0] = inner
-        grid[1:-1, 1:-1] = total + np.arange((n - 1) * (m - 1)).reshape(n - 1, m - 1)
-        total += (n - 1) * (m - 1)
-        corners.append(np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=-1).reshape(-1, 4))
-    return np.concatenate(corners)
+def _resolved(structure: BlockStructure, edges: tuple[int, ...]) -> tuple[Grading, ...]:
+    """Gradings of all edges, those that depend on their edge made for its present shape."""
+    if not edges:
+        return cast("tuple[Grading, ...]", structure.gradings)
+    gradings = list(structure.gradings)
+    topology = structure.topology
+    for edge in edges:
+        first, second = structure.vertices[topology.edges[edge]]
+        shape = edge_shape(first, second, structure.curves.get(edge))
+        try:
+            gradings[edge] = cast(EdgeGrading, structure.gradings[edge]).resolved(shape, int(topology.counts[edge]))
+        except GradingError as error:
+            raise GradingError(f"edge {topology.edge_name(edge)}: {error}") from error
+    return cast("tuple[Grading, ...]", tuple(gradings))
 
 
-def _block_grid(cells: Index, columns: int, rows: int, order: int) -> Index:
-    """Node numbers of a block as a grid, shape (rows p + 1, columns p + 1)."""
-    i, j = np.arange(columns * order + 1), np.arange(rows * order + 1)
-    ci, cj = np.minimum(i // order, columns - 1), np.minimum(j // order, rows - 1)
-    local = (j - cj * order)[:, None] * (order + 1) + (i - ci * order)
-    return np.asarray(cells[cj[:, None] * columns + ci, local])
-
-
-def _edge_nodes(topology: BlockTopology, block_nodes: list[Index]) -> list[Index]:
-    edges: list[Index] = [np.zeros(0, dtype=np.int64)] * len(topology.edges)
-    for grid, sides in zip(block_nodes, topology.block_edges, strict=True):
-        for side, nodes in zip(sides, (grid[0], grid[:, -1], grid[-1], grid[:, 0]), strict=True):
-            edges[side] = nodes
-    return edges
+def _layout(
+    numbers: Connectivity,
+    topology: BlockTopology,
+    gradings: tuple[Grading, ...],
+    last: tuple[tuple[Grading, ...], Layout] | None,
+) -> Layout:
+    """Make a layout; what has the gradings of the last one is taken from there."""
+    batches: list[Batch] = []
+    if last is None:
+        parameters = _edge_parameters(topology, gradings, numbers.order)
+        for patch in numbers.patches:
+            batches.extend(_batches(patch, topology, parameters))
+        return Layout(numbers, np.concatenate(parameters), tuple(batches))
+    before, known = last
+    changed = np.array([bool(new != old) for new, old in zip(gradings, before, strict=True)], dtype=np.bool_)
+    parameters = [known.parameters_of_edge(edge) for edge in range(len(gradings))]
+    for edge in np.flatnonzero(changed):
+        count, place = int(topology.counts[edge]), f"edge {topology.edge_name(int(edge))}"
+        parameters[edge] = node_parameters(gradings[edge], count, numbers.order, place)
+    touched = np.asarray(changed[topology.block_edges].any(axis=1))
+    for patch in numbers.patches:
+        if touched[patch.blocks].any():
+            batches.extend(_batches(patch, topology, parameters))
+        else:
+            batches.extend(batch for batch in known.batches if batch.patch is patch)
+    return Layout(numbers, np.concatenate(parameters), tuple(batches))
 
 
 def _edge_parameters(topology: BlockTopology, gradings: tuple[Grading, ...], order: int) -> list[Array]:
     """Parameters of the nodes of every edge; edges of equal grading and count share them."""
     known: dict[tuple[Grading, int], Array] = {}
-    for edge, key in enumerate(zip(gradings, topology.counts.tolist(), strict=True)):
+    keys = list(zip(gradings, topology.counts.tolist(), strict=True))
+    for edge, key in enumerate(keys):
         if key not in known:
             known[key] = node_parameters(*key, order, f"edge {topology.edge_name(edge)}")
-    return [known[key] for key in zip(gradings, topology.counts.tolist(), strict=True)]
+    return [known[key] for key in keys]
 
 
-def _batches(topology: BlockTopology, block_nodes: list[Index], parameters: list[Array]) -> tuple[Batch, ...]:
-    groups: dict[tuple[int, int, bool], list[int]] = {}
-    for block, sides in enumerate(topology.block_edges):
-        bottom, right, top, left = (parameters[s] for s in sides)
-        equal = _same(bottom, top) and _same(left, right)
-        groups.setdefault((*block_nodes[block].shape, equal), []).append(block)
+def _batches(patch: Patch, topology: BlockTopology, parameters: list[Array]) -> list[Batch]:
+    """Split a patch by which pairs of opposite edges share their parameters."""
+    sides = topology.block_edges[patch.blocks]
+    bottom, right, top, left = (np.stack([parameters[s] for s in sides[:, k]]) for k in range(4))
+    kind = 2 * (bottom != top).any(axis=1) + (left != right).any(axis=1)
     batches = []
-    for blocks in groups.values():
-        sides = topology.block_edges[blocks]
-        bottom, right, top, left = (np.stack([parameters[s] for s in sides[:, k]]) for k in range(4))
-        weights = TransfiniteWeights.from_parameters(bottom, top, left, right)
-        nodes = np.stack([block_nodes[b] for b in blocks])
-        outer = tuple(side.copy() for side in (nodes[:, 0], nodes[:, -1], nodes[:, :, 0], nodes[:, :, -1]))
-        inner = np.ascontiguousarray(nodes[:, 1:-1, 1:-1])
-        batches.append(Batch(np.array(blocks), outer, inner, weights))
-    return tuple(batches)
-
-
-def _same(first: Array, second: Array) -> bool:
-    return first is second or np.array_equal(first, second)
-
-
-def _edge_groups(topology: BlockTopology, columns: Index, rows: Index, cell_starts: Index) -> dict[str, Index]:
-    flat = topology.block_edges.ravel()
-    place = np.empty(len(topology.edges), dtype=np.int64)  # first of the block sides on each edge
-    place[flat[::-1]] = np.arange(len(flat))[::-1]
-
-    def sides_of(edge: int) -> Index:
-        block, side = divmod(int(place[edge]), 4)
-        cells = np.arange(cell_starts[block], cell_starts[block + 1]).reshape(rows[block], columns[block])
-        along = (cells[0], cells[:, -1], cells[-1], cells[:, 0])[side]
-        return np.stack([along, np.full(len(along), side)], axis=-1)
-
-    return {
-        name: np.concatenate([sides_of(int(edge)) for edge in edges]) for name, edges in topology.edge_groups.items()
-    }
+    for k in np.unique(kind):
+        some = np.flatnonzero(kind == k)
+        weights = TransfiniteWeights.from_parameters(bottom[some], top[some], left[some], right[some])
+        batches.append(Batch(patch, some, weights))
+    return batches
