@@ -22,6 +22,14 @@ class Uniform:
         """Return ``s``."""
         return np.asarray(s, dtype=float)
 
+    def reversed(self) -> Uniform:
+        """Return itself."""
+        return self
+
+    def restricted(self, start: float, stop: float) -> Uniform:
+        """Return itself."""
+        return self
+
 
 @dataclass(frozen=True)
 class Quadratic:
@@ -41,6 +49,10 @@ class Quadratic:
         r = 2.0 * np.asarray(s, dtype=float) - 1.0
         return np.asarray((r + self.m * (r * r - 1.0) / 2.0 + 1.0) / 2.0)
 
+    def reversed(self) -> Quadratic:
+        """Return the grading walked from the other end."""
+        return Quadratic(-self.m)
+
 
 @dataclass(frozen=True)
 class Cubic:
@@ -59,3 +71,7 @@ class Cubic:
         """Positions of the parameters ``s``."""
         r = 2.0 * np.asarray(s, dtype=float) - 1.0
         return np.asarray(((1.0 + self.m / 2.0) * r - self.m / 2.0 * r**3 + 1.0) / 2.0)
+
+    def reversed(self) -> Cubic:
+        """Return itself: it is symmetric."""
+        return self

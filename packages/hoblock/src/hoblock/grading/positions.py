@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.errors import GradingError
+from hoblock.grading.derived import Reversed
 from hoblock.grading.grading import Grading
+from hoblock.grading.listed import Listed
 from hoblock.reference import gauss_lobatto
 
 Array = NDArray[np.float64]
@@ -20,8 +22,10 @@ def element_corners(grading: Grading, count: int, place: str = "grading") -> Arr
     Raises
     ------
     GradingError
-        If the positions are not strictly increasing or the ends are not 0 and 1.
+        If the positions are not strictly increasing, the ends are not 0 and 1, or a grading lists the corners of
+        another number of elements.
     """
+    _check_count(grading, count, place)
     corners = np.array(grading(np.linspace(0.0, 1.0, count + 1)), dtype=float)
     if abs(corners[0]) > 1e-12 or abs(corners[-1] - 1.0) > 1e-12:
         raise GradingError(f"{place}: {grading} maps 0 and 1 to {corners[0]:g} and {corners[-1]:g}; must keep both.")
@@ -49,3 +53,12 @@ def node_parameters(grading: Grading, count: int, order: int, place: str = "grad
     inner = (gauss_lobatto(order)[:-1] + 1.0) / 2.0
     nodes = corners[:-1, None] + np.diff(corners)[:, None] * inner
     return np.append(nodes.ravel(), 1.0)
+
+
+def _check_count(grading: Grading, count: int, place: str) -> None:
+    listed = grading.grading if isinstance(grading, Reversed) else grading
+    if isinstance(listed, Listed) and listed.count != count:
+        raise GradingError(
+            f"{place}: the grading lists {listed.count} elements, the edge has {count}. List {count + 1} positions or "
+            f"{count} sizes, or give the edge's chain {listed.count} elements."
+        )
