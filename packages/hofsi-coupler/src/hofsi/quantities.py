@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import QuadMesh
+from hoblock.errors import LocationError
 from hoblock.layout import layout
+from hoblock.locate import Location, find, interpolation_weights, locate, location_of_node
 from hofsi import case
 from hofsi.build import FluidPart, Problem, SolidPart
 from hofsi.errors import CaseError
 from hofsi.fem.element import boundary_first
-from hofsi.fem.locate import Location, find, interpolation_weights, locate, location_of_node
 from hofsi.records import State, StepRecord
 
 if TYPE_CHECKING:
@@ -258,7 +259,10 @@ def _attached(part: FluidPart | SolidPart, at: case.Point, place: str) -> Locati
     """Location of a point in the reference mesh."""
     body, mesh = "fluid" if isinstance(part, FluidPart) else "solid", part.mesh
     if at.vertex is None:
-        return locate(mesh, (at.x, at.y), place, of=f"the {body}'s mesh")
+        try:
+            return locate(mesh, (at.x, at.y), of=f"the {body}'s mesh")
+        except LocationError as error:
+            raise CaseError(str(error).removesuffix("."), place) from error
     names = part.structure.topology.vertex_names
     if at.vertex not in names:
         some = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hoblock import Arc, BlockStructure, Exponential, QuadMesh, generate
+from hoblock.blocks import BlockStructure
+from hoblock.curves import Arc
+from hoblock.errors import LocationError
+from hoblock.generate import generate
+from hoblock.grading import Exponential
+from hoblock.locate import Location, Locator, find, interpolation_weights, locate, location_of_node
+from hoblock.mesh import QuadMesh
 from hoblock.reference import gauss_lobatto, tensor_basis
-from hofsi.errors import CaseError
-from hofsi.fem.locate import Location, find, interpolation_weights, locate, location_of_node
 
 
 def ring(order: int, count: int = 3) -> QuadMesh:
@@ -82,9 +86,8 @@ def test_points_on_an_approximated_circle_are_taken_to_the_boundary() -> None:
 def test_places_outside_are_named_with_the_nearest_node(place: tuple[float, float]) -> None:
     mesh = ring(4)
     assert find(mesh, place) is None
-    with pytest.raises(CaseError, match=r"outside the mesh; expected a place inside\. The nearest node is") as error:
-        locate(mesh, place, "quantities.p.at")
-    assert error.value.place == "quantities.p.at"
+    with pytest.raises(LocationError, match=r"outside the ring; expected a place inside\. The nearest node is"):
+        locate(mesh, place, of="the ring")
 
 
 def test_places_are_followed_through_a_moving_mesh() -> None:
@@ -126,3 +129,40 @@ def test_corner_nodes_have_a_location() -> None:
     inner = int(mesh.cells[0, 5])
     with pytest.raises(ValueError, match=f"node {inner} is not a corner"):
         location_of_node(mesh, inner)
+
+
+@pytest.mark.parametrize("order", [1, 3, 6])
+def test_many_places_are_found_at_once(order: int) -> None:
+    mesh = ring(order, count=4)
+    rng = np.random.default_rng(7302)
+    elements = rng.integers(len(mesh.cells), size=6000)
+    xi = rng.uniform(-1.0, 1.0, (len(elements), 2))
+    X = mesh.points[mesh.cells[elements]]
+    places = np.einsum("km,kmd->kd", tensor_basis(gauss_lobatto(order), xi), X)
+    found = Locator(mesh).find(places)
+    assert found.found.all()
+    np.testing.assert_array_equal(found.elements, elements)
+    np.testing.assert_allclose(found.xi, xi, atol=1e-9)
+
+
+def test_one_place_and_many_are_found_alike() -> None:
+    mesh = ring(4)
+    places = np.random.default_rng(7303).uniform(-2.3, 2.3, (200, 2))
+    found = Locator(mesh).find(places)
+    assert len(found) == 200
+    assert 0 < found.found.sum() < 200
+    assert np.isnan(found.xi[~found.found]).all()
+    for k, place in enumerate(places):
+        assert found[k] == find(mesh, tuple(place))
+
+
+def test_no_place_at_all_is_found_nowhere() -> None:
+    assert len(Locator(ring(2)).find(np.zeros((0, 2)))) == 0
+
+
+def test_element_of_thin_layers_is_found() -> None:
+    x, y = np.linspace(0.0, 1.0, 3), np.array([0.0, 1e-7, 1e-3, 1.0])
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    cells = np.array([(k, k + 1, k + 3, k + 4) for row in range(3) for k in (3 * row, 3 * row + 1)])
+    found = Locator(QuadMesh(points, cells, 1, {}, {})).find(np.array([[0.7, 5e-8], [0.2, 6e-4], [0.9, 0.5]]))
+    assert found.elements.tolist() == [1, 2, 5]
