@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hoblock.errors import CurveError
 
@@ -16,15 +16,35 @@ __all__ = ["Arc"]
 
 @dataclass(frozen=True)
 class Arc:
-    """Circular arc: centre, radius, angle at t = 0 and signed opening angle, in radians."""
+    """Circular arc: centre, radius, angle at t = 0 and signed opening angle, in radians.
+
+    Parameters
+    ----------
+    center : (float, float)
+    radius : float
+        Positive.
+    start, opening : float
+        Angle at t = 0 and its change, positive counter-clockwise, at most a full turn.
+    """
 
     center: tuple[float, float]
     radius: float
     start: float
     opening: float
 
+    def __post_init__(self) -> None:
+        place = f"arc about {tuple(self.center)}"
+        if np.shape(self.center) != (2,) or not np.isfinite([*self.center, self.radius, self.start]).all():
+            raise CurveError(f"{place}: radius {self.radius}, start {self.start}; expected finite numbers.")
+        if not self.radius > 0.0:
+            raise CurveError(f"{place}: radius {self.radius:g}; expected a positive one.")
+        if not 0.0 < abs(self.opening) <= 2.0 * np.pi * (1.0 + 1e-12):
+            raise CurveError(
+                f"{place}: opening angle {self.opening:g}; expected one between -2 pi and 2 pi that is not zero."
+            )
+
     @staticmethod
-    def from_center(center: tuple[float, float], first: Array, second: Array) -> Arc:
+    def from_center(center: tuple[float, float], first: ArrayLike, second: ArrayLike) -> Arc:
         """Return the shorter arc about ``center`` from one point to the other.
 
         Raises
@@ -50,7 +70,38 @@ class Arc:
         return Arc((float(c[0]), float(c[1])), ra, float(np.arctan2(a[1], a[0])), opening)
 
     @staticmethod
-    def through(first: Array, middle: Array, second: Array) -> Arc:
+    def with_angle(first: ArrayLike, second: ArrayLike, angle: float) -> Arc:
+        """Return the arc from one point to another that turns by an angle.
+
+        Parameters
+        ----------
+        first, second : array_like, shape (2,)
+        angle : float
+            Opening angle in radians, between -2 pi and 2 pi, not zero; positive counter-clockwise about the centre.
+
+        Raises
+        ------
+        CurveError
+            If there is no such angle, or the points coincide.
+        """
+        a, b = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+        if not 0.0 < abs(angle) < 2.0 * np.pi:
+            raise CurveError(
+                f"arc of angle {angle:g}: expected an angle in radians between -2 pi and 2 pi that is not zero. "
+                "Leave the curve out for a straight edge."
+            )
+        chord = b - a
+        length = float(np.hypot(*chord))
+        if length == 0.0:
+            raise CurveError(f"arc of angle {angle:g}: both end points are ({a[0]:g}, {a[1]:g}). Move a vertex.")
+        height = 0.5 / np.tan(0.5 * angle)  # of the centre above the chord, to its left, in chords
+        center = 0.5 * (a + b) + height * np.array([-chord[1], chord[0]])
+        start = a - center
+        radius = 0.5 * length / abs(np.sin(0.5 * angle))
+        return Arc((float(center[0]), float(center[1])), float(radius), float(np.arctan2(start[1], start[0])), angle)
+
+    @staticmethod
+    def through(first: ArrayLike, middle: ArrayLike, second: ArrayLike) -> Arc:
         """Return the arc from ``first`` through ``middle`` to ``second``.
 
         Raises
@@ -80,7 +131,7 @@ class Arc:
         turned = angles - (self.start, self.start + self.opening)
         turned -= 2.0 * np.pi * np.round(turned / (2.0 * np.pi))  # the nearer way round
         opening = self.opening + float(turned[1] - turned[0])
-        if opening * self.opening <= 0.0:
+        if opening * self.opening <= 0.0 or abs(opening) > 2.0 * np.pi:
             return None
         return Arc(self.center, self.radius, self.start + float(turned[0]), opening)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["Curve", "CuttableCurve", "PiecewiseCurve"]
+__all__ = ["Curve", "CuttableCurve", "PiecewiseCurve", "breaks_of"]
 
 
 class Curve(Protocol):
@@ -37,3 +37,8 @@ class PiecewiseCurve(Curve, Protocol):
     def breaks(self) -> Array:
         """Parameters strictly between 0 and 1, ascending, where the curve is less smooth than in between."""
         ...
+
+
+def breaks_of(curve: Curve | None) -> Array:
+    """Breaks of a curve; none of one that does not tell or of a straight edge."""
+    return np.asarray(curve.breaks, dtype=float) if isinstance(curve, PiecewiseCurve) else np.zeros(0)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.curves.curve import Curve, CuttableCurve
+from hoblock.curves.arc_length import ArcLength
+from hoblock.curves.curve import Curve, CuttableCurve, breaks_of
 from hoblock.curves.nodal import NodalCurve
 
 Array = NDArray[np.float64]
@@ -20,6 +21,11 @@ class Reversed:
     """A curve walked from the other end."""
 
     curve: Curve
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters where the curve is not smooth."""
+        return 1.0 - breaks_of(self.curve)[::-1]
 
     def __call__(self, t: Array) -> Array:
         """Points at the parameters ``t``."""
@@ -38,6 +44,7 @@ def with_ends(curve: Curve, shifts: tuple[Array, Array], ends: tuple[Array, Arra
 
     A curve that can be ``cut`` anew between other ends (an arc whose new ends lie on its circle) is, so that a vertex
     can slide along it. Any other curve keeps its shape, with the displacement of the ends blended linearly along it.
+    A curve by arc length is one afterwards.
 
     Parameters
     ----------
@@ -47,6 +54,10 @@ def with_ends(curve: Curve, shifts: tuple[Array, Array], ends: tuple[Array, Arra
     ends : pair of ndarray, shape (2,)
         New positions of the ends.
     """
+    if isinstance(curve, ArcLength):
+        return ArcLength(with_ends(curve.curve, shifts, ends))
+    if isinstance(curve, Reversed) and isinstance(curve.curve, ArcLength):
+        return Reversed(with_ends(curve.curve, shifts[::-1], ends[::-1]))
     first, second = shifts
     if isinstance(curve, Displaced):  # keep one level of blending, however often the structure moves
         first, second = first + np.array(curve.first), second + np.array(curve.second)
@@ -66,6 +77,11 @@ class Displaced:
     curve: Curve
     first: tuple[float, float]
     second: tuple[float, float]
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters where the curve is not smooth."""
+        return breaks_of(self.curve)
 
     def __call__(self, t: Array) -> Array:
         """Points at the parameters ``t``."""

@@ -51,6 +51,11 @@ class NodalCurve:
         """Number of elements."""
         return (len(self.points) - 1) // self.order
 
+    @property
+    def breaks(self) -> Array:
+        """Parameters of the corners between elements."""
+        return np.arange(1, self.count) / self.count
+
     def __call__(self, t: Array) -> Array:
         """Points at ``t``; the elements have equal parameter length."""
         scaled = np.asarray(t, dtype=float) * self.count
