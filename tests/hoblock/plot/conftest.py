@@ -1,0 +1,6 @@
+import pytest
+
+
+@pytest.fixture
+def matplotlib():
+    return pytest.importorskip("matplotlib")
