@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hoblock.generate import generate
-from hoblock.io.equispaced import equispaced_points
+from hoblock.io.equispaced import equispaced_points, equispaced_values, resampled
 from hoblock.reference import equispaced, gauss_lobatto, tensor_basis
 
 
@@ -28,3 +28,17 @@ def test_points_of_the_mesh_are_not_touched(layouts):
     points = equispaced_points(mesh)
     points[0] = 5.0
     assert mesh.points[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("shape", [(), (3,), (2, 2)])
+def test_values_of_any_shape(shape, layouts, rng):
+    mesh = generate(layouts.random("disc", rng), 4)
+    values = rng.normal(size=(len(mesh.points), *shape))
+    result = equispaced_values(mesh, values)
+    assert result.shape == values.shape
+    where = rng.uniform(-1, 1, (7, 2))
+    before = np.tensordot(tensor_basis(gauss_lobatto(4), where), values[mesh.cells], (1, 1))
+    after = np.tensordot(tensor_basis(equispaced(4), where), result[mesh.cells], (1, 1))
+    np.testing.assert_allclose(after, before, atol=1e-12)
+    back = resampled(result, mesh.cells, 4, equispaced(4), gauss_lobatto(4))
+    np.testing.assert_allclose(back, values, atol=1e-13)

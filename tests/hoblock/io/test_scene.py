@@ -128,11 +128,11 @@ def test_counts_and_gradings():
     mesh = scene()
     (count,) = mesh.counts
     assert (count.on, count.elements, count.place) == ((("a", "b"),), 3, "mesh.count[0]")
-    assert [(g.kind, g.parameter, g.place) for g in mesh.gradings] == [
-        ("exponential", 1.8, "mesh.grading[0]"),
-        ("quadratic", -0.5, "mesh.grading[1]"),
-        ("cubic", 0.0, "mesh.grading[2]"),
-        ("uniform", 0.0, "mesh.grading[3]"),
+    assert [(g.kind, dict(g.values), g.place) for g in mesh.gradings] == [
+        ("exponential", {"a": 1.8}, "mesh.grading[0]"),
+        ("quadratic", {"m": -0.5}, "mesh.grading[1]"),
+        ("cubic", {"m": 0.0}, "mesh.grading[2]"),
+        ("uniform", {}, "mesh.grading[3]"),
     ]
     assert mesh.gradings[1].on == mesh.edges["outer"]
 
@@ -226,7 +226,7 @@ def test_constants_refused(constants, message):
         ("mesh.elements=0", "mesh.elements: got 0; expected an integer of at least 1"),
         (
             "mesh.odrer=3",
-            r"mesh\.odrer: unknown key\. Did you mean 'order'\? Known keys: vertices, blocks, edges, order",
+            r"mesh\.odrer: unknown key\. Did you mean 'order'\? Known keys: .*vertices, blocks, edges, order",
         ),
         ("mesh.vertices={}", r"mesh\.vertices: there are no vertices"),
         ("mesh.vertices.a=[1, 2, 3]", r"mesh\.vertices\.a: got a list of 3; expected two values"),
@@ -259,7 +259,7 @@ def test_constants_refused(constants, message):
         ("mesh.curve[0].kind=ark", r"mesh\.curve\[0\]\.kind: got 'ark'\. Did you mean 'arc'\?"),
         (
             "mesh.curve[0].through=[1, 1]",
-            r"mesh\.curve\[0\]: an arc with both 'center' and 'through'; expected exactly",
+            r"mesh\.curve\[0\]: an arc with 'center' and 'through'; expected exactly",
         ),
         ("mesh.curve[0].center=[1]", r"mesh\.curve\[0\]\.center: got a list of 1"),
         ("mesh.curve[0].radius=1", r"mesh\.curve\[0\]\.radius: unknown key\. .*Known keys: on, kind, center, through"),
@@ -288,7 +288,7 @@ def test_mistakes_have_a_place(override, message):
     [
         ("order = 4\n", r"mesh\.order: the required key is missing"),
         ('kind = "arc"\n', r"mesh\.curve\[0\]\.kind: the required key is missing"),
-        ("center = [0, 0]\n", r"mesh\.curve\[0\]: an arc with neither 'center' nor 'through'"),
+        ("center = [0, 0]\n", r"mesh\.curve\[0\]: an arc with none of 'center', 'through' and 'angle'"),
         ('on = "inner"\n', r"mesh\.curve\[0\]\.on: the required key is missing"),
         ('y = "s"\n', r"mesh\.curve\[2\]\.y: the required key is missing"),
         ("elements = 3\n", r"mesh\.count\[0\]\.elements: the required key is missing"),

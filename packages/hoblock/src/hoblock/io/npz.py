@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.errors import MeshFileError
+from hoblock.io.replacing import replacing
 from hoblock.mesh import QuadMesh
 
 __all__ = ["read_npz", "write_npz"]
@@ -39,7 +40,7 @@ def write_npz(path: str | Path, mesh: QuadMesh) -> None:
     for kind, groups in (("cell", mesh.cell_groups), ("edge", mesh.edge_groups)):
         arrays[f"{kind}_group_names"] = np.array(list(groups), dtype=np.str_)
         arrays.update({f"{kind}_group_{k}": members for k, members in enumerate(groups.values())})
-    with Path(path).open("wb") as file:
+    with replacing(path) as file:
         np.savez_compressed(file, allow_pickle=False, **arrays)
 
 

@@ -22,6 +22,7 @@ __all__ = [
     "integer_of",
     "names_of",
     "number_of",
+    "number_or_constant_of",
     "pair_of",
     "path_of",
     "paths_of",
@@ -142,14 +143,20 @@ def pair_of(value: object, place: str, constants: Mapping[str, float] | None = N
     """Return ``[x, y]``; with constants, expressions of these may stand for the numbers."""
 
     def coordinate(part: object, place: str) -> float:
-        if constants is None:
-            return number_of(part, place)
-        if isinstance(part, str):
-            return compile_expression(part, (), constants, place).value
-        return number_of(part, place, expected="a number or an expression of the constants")
+        return number_of(part, place) if constants is None else number_or_constant_of(part, place, constants)
 
     x, y = _two(value, place, coordinate)
     return x, y
+
+
+def number_or_constant_of(
+    value: object, place: str, constants: Mapping[str, float], limits: Limits | None = None
+) -> float:
+    """Return a finite number within limits; an expression of the constants may stand for it."""
+    expected = "a number or an expression of the constants"
+    if isinstance(value, str):
+        value = compile_expression(value, (), constants, place).value
+    return number_of(value, place, limits, expected)
 
 
 def expression_of(

@@ -1,0 +1,37 @@
+import pytest
+
+from hoblock.io.replacing import replacing
+
+
+def test_a_file_is_replaced_at_the_end(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_bytes(b"old")
+    with replacing(path) as file:
+        file.write(b"new")
+        assert path.read_bytes() == b"old"
+    assert path.read_bytes() == b"new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_nothing_remains_of_a_failure(tmp_path):
+    path = tmp_path / "a.txt"
+
+    def fail():
+        with replacing(path) as file:
+            file.write(b"half of it")
+            raise RuntimeError("the disk is full")
+
+    with pytest.raises(RuntimeError, match="the disk is full"):
+        fail()
+    assert not list(tmp_path.iterdir())
+    path.write_bytes(b"old")
+    with pytest.raises(RuntimeError, match="the disk is full"):
+        fail()
+    assert path.read_bytes() == b"old"
+
+
+def test_missing_folders_are_named_with_the_file(tmp_path):
+    path = tmp_path / "missing" / "a.txt"
+    with pytest.raises(FileNotFoundError, match="No such file or directory") as info, replacing(path):
+        pass
+    assert info.value.filename == str(path)
