@@ -7,16 +7,21 @@ and a way out.
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = [
     "CurveError",
     "ExpressionError",
+    "FieldError",
     "GradingError",
     "HoblockError",
     "InvalidMeshError",
+    "LocationError",
     "MeshFileError",
     "MissingExtraError",
     "MoverError",
     "SceneError",
+    "TemplateError",
     "TopologyError",
 ]
 
@@ -59,6 +64,31 @@ class ExpressionError(SceneError):
     """An expression that cannot be read, or whose value is not finite."""
 
 
+class TemplateError(HoblockError):
+    """A template that does not exist, or a parameter that it cannot use.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, what was found, what was expected, and a way out.
+    parameter : str, optional
+        Name of the parameter, empty if it is none.
+
+    Attributes
+    ----------
+    problem, parameter : str
+        As given.
+    """
+
+    def __init__(self, message: str, parameter: str = "") -> None:
+        super().__init__(message, parameter)
+        self.problem = message
+        self.parameter = parameter
+
+    def __str__(self) -> str:
+        return f"{self.parameter}: {self.problem}" if self.parameter else self.problem
+
+
 class TopologyError(HoblockError):
     """Blocks that do not form a valid structure."""
 
@@ -67,12 +97,43 @@ class CurveError(HoblockError):
     """A curve that does not fit its edge or cannot be evaluated."""
 
 
+class FieldError(HoblockError):
+    """A field whose values do not fit its grid or mesh, or that is asked for outside of it."""
+
+
 class GradingError(HoblockError):
     """A grading with impossible parameters or one that is not monotonic."""
 
 
 class InvalidMeshError(HoblockError):
-    """A mesh with an element whose Jacobian is not positive."""
+    """A mesh with elements whose Jacobian is not proven positive.
+
+    Parameters
+    ----------
+    message : str
+        How many elements are bad, which, where and why.
+    elements : tuple of BadElement, optional
+        The worst of them.
+    certificate : Certificate, optional
+        Of the mesh.
+
+    Attributes
+    ----------
+    elements, certificate
+        As given.
+    """
+
+    def __init__(self, message: str, elements: tuple[Any, ...] = (), certificate: Any = None) -> None:
+        super().__init__(message, elements, certificate)
+        self.elements = elements
+        self.certificate = certificate
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class LocationError(HoblockError):
+    """A place that is outside a mesh."""
 
 
 class MeshFileError(HoblockError):
