@@ -5,7 +5,7 @@ from hoblock.blocks import BlockStructure
 from hoblock.curves import Arc, Displaced, NodalCurve, Parametric
 from hoblock.errors import CurveError, GradingError, TopologyError
 from hoblock.generate import generate
-from hoblock.grading import Exponential, Reversed, Uniform
+from hoblock.grading import BoundaryLayer, Exponential, Uniform, reverse
 from hoblock.layout import layout
 
 VERTICES = {"a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (0, 1), "e": (1, 1), "f": (2, 1)}
@@ -50,7 +50,7 @@ def test_curves_and_gradings_given_against_an_edge_are_turned():
     structure = build(curves={("b", "a"): bump}, gradings={("b", "a"): Exponential(2.0), ("b", "c"): Exponential(1.0)})
     edge, forward = structure.topology.edge(0, 1)
     assert forward
-    assert structure.gradings[edge] == Reversed(Exponential(2.0))
+    assert structure.gradings[edge] == Exponential(-2.0)
     assert structure.gradings[structure.topology.edge(1, 2)[0]] == Exponential(1.0)
     assert structure.gradings[structure.topology.edge(0, 3)[0]] == Uniform()
     t = np.array([0.0, 0.25, 1.0])
@@ -124,7 +124,7 @@ def test_restricted_keeps_names_directions_and_counts(layouts, rng):
     assert counts == {"b–c": 3, "e–f": 3, "b–e": 4, "c–f": 4}
     assert [topology.edge_name(k) for k in topology.edge_groups["top"]] == ["e–f"]
     assert [topology.edge_name(k) for k in part.curves] == ["b–c"]
-    assert part.gradings[topology.edge_groups["out"][0]] == Reversed(Exponential(1.0))
+    assert part.gradings[topology.edge_groups["out"][0]] == Exponential(-1.0)
     assert "out" not in structure.restricted(["left"]).topology.edge_groups
     both = structure.restricted(["left", "right"])
     np.testing.assert_array_equal(both.topology.quads, structure.topology.quads)
@@ -254,3 +254,103 @@ def test_curves_and_gradings_are_functions():
         build(curves={("a", "b"): 3.0})
     with pytest.raises(GradingError, match=r"gradings: edge a–b has 1\.5; expected a function"):
         build(gradings={("a", "b"): 1.5})
+
+
+def test_with_counts_holds_for_chains():
+    structure = build(counts={("a", "d"): 4}, default_count=2)
+    changed = structure.with_counts({("c", "f"): 5, ("e", "f"): 3})
+    counts = {changed.topology.edge_name(k): int(n) for k, n in enumerate(changed.topology.counts)}
+    assert counts == {"a–b": 2, "d–e": 2, "b–c": 3, "e–f": 3, "a–d": 5, "b–e": 5, "c–f": 5}
+    assert structure.topology.counts.tolist().count(4) == 3
+    match = (
+        r"edges a–d and c–f ask for 3 and 5 elements but belong to one chain of opposite edges \(.*b–e.*\), "
+        "which needs one number"
+    )
+    with pytest.raises(TopologyError, match=match):
+        structure.with_counts({("a", "d"): 3, ("f", "c"): 5})
+    with pytest.raises(TopologyError, match="edge a–b: 0 elements; expected at least 1"):
+        structure.with_counts({("a", "b"): 0})
+    with pytest.raises(TopologyError, match="counts: no vertex named 'x'"):
+        structure.with_counts({("a", "x"): 2})
+
+
+def test_with_gradings_follows_the_direction_of_the_pair():
+    structure = build(gradings={("a", "b"): Exponential(1.0)})
+    changed = structure.with_gradings({("e", "d"): Exponential(2.0), ("c", "f"): BoundaryLayer(0.1)})
+    topology = changed.topology
+    assert changed.gradings[topology.edge(3, 4)[0]] == reverse(Exponential(2.0))
+    assert changed.gradings[topology.edge(0, 1)[0]] == Exponential(1.0)
+    assert changed.gradings[topology.edge(2, 5)[0]] == BoundaryLayer(0.1)
+    with pytest.raises(GradingError, match="expected a function"):
+        structure.with_gradings({("a", "b"): None})
+    with pytest.raises(GradingError, match="expected a function"):
+        structure.with_gradings({("a", "b"): Exponential})
+    with pytest.raises(TopologyError, match="gradings: edge a–b is given twice"):
+        structure.with_gradings({("a", "b"): Uniform(), ("b", "a"): Uniform()})
+
+
+def test_with_curves_bends_and_straightens(layouts):
+    bump = layouts.bump((1, 0), (0, 0), 0.1)
+    structure = build(curves={("b", "c"): layouts.bump((1, 0), (2, 0), 0.1)})
+    changed = structure.with_curves({("b", "a"): bump, ("b", "c"): None})
+    assert [changed.topology.edge_name(edge) for edge in changed.curves] == ["a–b"]
+    np.testing.assert_allclose(changed.curves[0](np.array([0.25])), bump(np.array([0.75])), atol=1e-15)
+    with pytest.raises(CurveError, match="curve on edge a–d"):
+        structure.with_curves({("a", "d"): bump})
+    with pytest.raises(CurveError, match="expected a function"):
+        structure.with_curves({("a", "d"): 3})
+    with pytest.raises(TopologyError, match="curves: edge a–b is given twice"):
+        structure.with_curves({("a", "b"): None, ("b", "a"): bump})
+    reentrant = {**VERTICES, "e": (1.7, 0.1)}
+    curve = Arc.through(np.array((1.7, 0.1)), np.array((1.9, 0.4)), np.array((2.0, 1.0)))
+    blocks = {"right": [tuple("bcfe")], "left": [tuple("abed")]}
+    bent = BlockStructure.build(reentrant, blocks, curves={("e", "f"): curve})
+    with pytest.raises(TopologyError, match="the angle at vertex"):
+        bent.with_curves({("e", "f"): None})
+
+
+def test_groups_are_added_replaced_and_removed():
+    structure = build(edges={"wall": [("a", "b")]})
+    named = structure.with_block_group("all", [0, 1]).with_edge_group("wall", [("c", "b"), ("e", "f")])
+    assert {name: blocks.tolist() for name, blocks in named.topology.block_groups.items()} == {
+        "left": [0],
+        "right": [1],
+        "all": [0, 1],
+    }
+    assert [named.topology.edge_name(edge) for edge in named.topology.edge_groups["wall"]] == ["b–c", "e–f"]
+    assert len(generate(named, 2).cell_groups["all"]) == 2
+    bare = named.without_groups("left", "right", "wall")
+    assert (list(bare.topology.block_groups), list(bare.topology.edge_groups)) == (["all"], [])
+    with pytest.raises(TopologyError, match="no group of blocks or edges named 'wal'; did you mean 'wall'"):
+        named.without_groups("wal")
+    with pytest.raises(TopologyError, match=r"blocks.all: \[2\]; expected numbers of blocks from 0 to 1"):
+        structure.with_block_group("all", [2])
+    with pytest.raises(TopologyError, match=r"edges\.wall: edge b–c is listed twice"):
+        structure.with_edge_group("wall", [("c", "b"), ("b", "c")])
+
+
+def test_edges_tell_their_points_and_gradings(layouts):
+    arc = Arc.from_center((0.5, -1.0), np.array([0.0, 0.0]), np.array([1.0, 0.0]))
+    structure = build(counts=4, curves={("a", "b"): arc}, gradings={("a", "b"): BoundaryLayer(0.1)})
+    t = np.linspace(0, 1, 5)
+    np.testing.assert_allclose(structure.edge_points(0, t), arc(t), atol=1e-15)
+    straight = structure.topology.edge(1, 2)[0]
+    np.testing.assert_allclose(structure.edge_points(straight, t), np.stack([1 + t, 0 * t], -1), atol=1e-15)
+    corners = structure.resolved_grading(0)(np.array([0.25]))
+    length = 2.0 * np.arcsin(0.5 / arc.radius) * arc.radius
+    assert corners[0] == pytest.approx(0.1 / length, rel=1e-9)
+    too_high = structure.with_gradings({("a", "b"): BoundaryLayer(7.0)})
+    with pytest.raises(GradingError, match="edge a–b: boundary layer: the first height 7 does not fit"):
+        too_high.resolved_grading(0)
+
+
+def test_a_block_whose_chords_have_no_area_may_be_curved():
+    vertices = {"a": (2, 0), "b": (0, 2), "c": (1.05, 1.5), "d": (1.5, 1.05)}
+    outer = Arc.from_center((0, 0), np.array((2.0, 0)), np.array((0, 2.0)))
+    inner = Arc.from_center((0, 0), np.array((1.5, 1.05)), np.array((1.05, 1.5)))
+    with pytest.raises(TopologyError, match="is clockwise or inverted"):
+        BlockStructure.build(vertices, [tuple("abcd")])
+    structure = BlockStructure.build(vertices, [tuple("abcd")], curves={("a", "b"): outer, ("d", "c"): inner})
+    assert len(structure.curves) == 2
+    with pytest.raises(TopologyError, match="is clockwise or inverted"):
+        BlockStructure.build(vertices, [tuple("abcd")], curves={("d", "c"): inner})

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TypeVar
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hoblock import edge_tables as tables
 from hoblock import topology_checks as checks
-from hoblock.curves import Curve, NodalCurve, reverse, with_ends
-from hoblock.errors import CurveError, GradingError, TopologyError
-from hoblock.grading import Grading, Uniform, node_parameters
-from hoblock.grading import Reversed as ReversedGrading
-from hoblock.orientation import orient
-from hoblock.spelling import did_you_mean
+from hoblock.assembly import assemble
+from hoblock.curves import Curve
+from hoblock.edge_shape import edge_shape
+from hoblock.edge_tables import Ends
+from hoblock.errors import GradingError, TopologyError
+from hoblock.grading import EdgeGrading, Grading
+from hoblock.moved_curves import moved_curves
 from hoblock.topology import BlockTopology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-Thing = TypeVar("Thing")
+
 
 __all__ = ["BlockStructure"]
 
@@ -46,7 +48,7 @@ class BlockStructure:
     topology: BlockTopology
     vertices: Array
     curves: Mapping[int, Curve]
-    gradings: tuple[Grading, ...]
+    gradings: tuple[Grading | EdgeGrading, ...]
 
     def __post_init__(self) -> None:
         vertices = np.array(self.vertices, dtype=float)
@@ -59,10 +61,10 @@ class BlockStructure:
         vertices: Mapping[str, Sequence[float]] | Array,
         blocks: Mapping[str, Iterable[Sequence[str | int]]] | Iterable[Sequence[str | int]],
         *,
-        counts: Mapping[tuple[str | int, str | int], int] | int = 1,
-        edges: Mapping[str, Iterable[tuple[str | int, str | int]]] | None = None,
-        curves: Mapping[tuple[str | int, str | int], Curve] | None = None,
-        gradings: Mapping[tuple[str | int, str | int], Grading] | None = None,
+        counts: Mapping[Ends, int] | int = 1,
+        edges: Mapping[str, Iterable[Ends]] | None = None,
+        curves: Mapping[Ends, Curve] | None = None,
+        gradings: Mapping[Ends, Grading | EdgeGrading] | None = None,
         default_count: int = 1,
     ) -> BlockStructure:
         """Build and check a block structure.
@@ -94,38 +96,22 @@ class BlockStructure:
             A curve that misses its vertices, or is none.
         """
         names, positions = checks.vertex_table(vertices)
-        number = {name: k for k, name in enumerate(names)}
-
-        def vertex(key: str | int, place: str) -> int:
-            name = str(key)
-            if name not in number:
-                raise TopologyError(f"{place}: no vertex named '{name}'{did_you_mean(name, names)}")
-            return number[name]
-
-        grouped = blocks if isinstance(blocks, Mapping) else {"blocks": blocks}
-        quads, groups = checks.quad_table(grouped, vertex)
-        checks.check_counter_clockwise(quads, groups, names, positions)
-        topology_edges, block_edges, chains, rotation = orient(quads, names)
-        quads = np.take_along_axis(quads, (np.arange(4) + rotation[:, None]) % 4, axis=1)
-        topology = BlockTopology(
-            names, quads, topology_edges, block_edges, chains, np.ones(len(chains), dtype=np.int64), groups, {}
+        number = checks.vertex_numbers(names)
+        quads, groups = checks.quad_table(blocks if isinstance(blocks, Mapping) else {"blocks": blocks}, number)
+        if not isinstance(counts, Mapping):
+            counts, default_count = {}, checks.element_count(counts, "counts")
+        parts = assemble(
+            names,
+            positions,
+            quads,
+            groups,
+            edge_groups=tables.paths_by_number(edges or {}, number),
+            counts=tables.by_number(counts, number, "counts"),
+            curves=tables.by_number(curves or {}, number, "curves"),
+            gradings=tables.by_number(gradings or {}, number, "gradings"),
+            default_count=default_count,
         )
-        curved = _directed(topology, curves or {}, vertex, "curves", reverse)
-        graded = _directed(topology, gradings or {}, vertex, "gradings", ReversedGrading)
-        checks.check_geometry(topology, positions, frozenset(curved))
-        named = {name: _named(topology, pairs, vertex, f"edges.{name}") for name, pairs in (edges or {}).items()}
-        asked = {}
-        if isinstance(counts, Mapping):
-            for pair, number_of_elements in counts.items():
-                first, second = checks.edge_pair(pair, "counts")
-                asked[vertex(first, "counts"), vertex(second, "counts")] = number_of_elements
-        else:
-            default_count = checks.element_count(counts, "counts")
-        per_edge = checks.chain_counts(topology, asked, default_count)
-        topology = replace(topology, counts=per_edge, edge_groups=named)
-        _check_ends(topology, positions, curved)
-        gradings_by_edge = tuple(graded.get(k, Uniform()) for k in range(len(topology_edges)))
-        return BlockStructure(topology, positions, curved, gradings_by_edge)
+        return BlockStructure(*parts)
 
     def moved(self, vertices: Array, curves: Mapping[int, Curve] | None = None) -> BlockStructure:
         """Return the structure with other vertex positions, sharing topology and gradings.
@@ -148,34 +134,36 @@ class BlockStructure:
         vertices = np.asarray(vertices, dtype=float)
         if vertices.shape != self.vertices.shape:
             raise TopologyError(f"moved: vertices have shape {vertices.shape}; expected {self.vertices.shape}.")
-        replaced = dict(curves or {})
-        for edge in replaced:
-            if not isinstance(edge, int | np.integer) or not 0 <= edge < len(self.topology.edges):
-                raise TopologyError(
-                    f"moved: curves has the key {edge!r}; expected edge numbers from 0 to "
-                    f"{len(self.topology.edges) - 1}. Use topology.edge(first, second)."
-                )
-        _check_ends(self.topology, vertices, replaced)
-        shift = vertices - self.vertices
-        result: dict[int, Curve] = {}
-        for edge, curve in self.curves.items():
-            first, second = self.topology.edges[edge]
-            if edge in replaced:
-                continue
-            if shift[first].any() or shift[second].any():
-                if isinstance(curve, NodalCurve):
-                    result[edge] = self._displaced_nodes(edge, curve, shift)
-                    continue
-                curve = with_ends(curve, (shift[first], shift[second]), (vertices[first], vertices[second]))
-            result[edge] = curve
-        result.update(replaced)
+        pair = self.vertices, vertices
+        result = moved_curves(self.topology, self.curves, dict(curves or {}), pair, self.resolved_grading)
+        tables.check_curve_ends(self.topology, vertices, curves or {})
         return BlockStructure(self.topology, vertices, result, self.gradings)
 
-    def _displaced_nodes(self, edge: int, curve: NodalCurve, shift: Array) -> NodalCurve:
-        """Nodes of an edge with the displacement of its ends blended by their parameters."""
-        t = node_parameters(self.gradings[edge], curve.count, curve.order)[:, None]
-        first, second = self.topology.edges[edge]
-        return NodalCurve(curve.points + (1.0 - t) * shift[first] + t * shift[second], curve.order)
+    def resolved_grading(self, edge: int) -> Grading:
+        """Return the grading of an edge; one that depends on the edge is made for its present shape.
+
+        Raises
+        ------
+        GradingError
+            If it does not fit; the error names the edge.
+        """
+        grading = self.gradings[edge]
+        if not isinstance(grading, EdgeGrading):
+            return grading
+        first, second = self.vertices[self.topology.edges[edge]]
+        shape = edge_shape(first, second, self.curves.get(edge))
+        try:
+            return grading.resolved(shape, int(self.topology.counts[edge]))
+        except GradingError as error:
+            raise GradingError(f"edge {self.topology.edge_name(edge)}: {error}") from error
+
+    def edge_points(self, edge: int, t: Array) -> Array:
+        """Return the points of an edge at parameters ``t`` in [0, 1], shape (n, 2); straight without a curve."""
+        t = np.asarray(t, dtype=float)
+        if edge in self.curves:
+            return np.asarray(self.curves[edge](t), dtype=float)
+        first, second = self.vertices[self.topology.edges[edge]]
+        return np.asarray((1.0 - t)[:, None] * first + t[:, None] * second)
 
     def restricted(self, groups: Iterable[str]) -> BlockStructure:
         """Return the part made of some block groups; edges keep their direction, names and numbers of elements.
@@ -185,115 +173,122 @@ class BlockStructure:
         TopologyError
             If a group does not exist.
         """
+        return self.part(self.topology.blocks_in(groups))
+
+    def part(self, blocks: Index) -> BlockStructure:
+        """Return the part made of some blocks, given by number, ascending, each once; see `restricted`."""
+        topology, vertices, edges = self.topology.restricted(blocks)
+        new_edge = {int(edge): k for k, edge in enumerate(edges)}
+        curves = {new_edge[edge]: curve for edge, curve in self.curves.items() if edge in new_edge}
+        return BlockStructure(topology, self.vertices[vertices], curves, tuple(self.gradings[k] for k in edges))
+
+    def with_counts(self, counts: Mapping[Ends, int]) -> BlockStructure:
+        """Return the structure with other numbers of elements; each holds for the whole chain of its edge.
+
+        Parameters
+        ----------
+        counts : mapping of (vertex, vertex) to int
+            By the names of the vertices. Chains that are not mentioned keep their number.
+
+        Raises
+        ------
+        TopologyError
+            If an edge does not exist, a number is not a positive integer, or two ask for different numbers of one
+            chain; the error names both edges and the chain.
+        """
         topology = self.topology
-        blocks = self._blocks_of(groups)
-        edges = np.unique(topology.block_edges[blocks])
-        vertices = np.unique(topology.quads[blocks])
-        new_block, new_edge, new_vertex = (
-            np.full(size, -1) for size in (len(topology.quads), len(topology.edges), len(self.vertices))
-        )
-        new_block[blocks], new_edge[edges], new_vertex[vertices] = (
-            np.arange(len(kept)) for kept in (blocks, edges, vertices)
-        )
+        asked = checks.chain_counts(topology, tables.by_number(counts, topology.vertex, "counts"), None)
+        return replace(self, topology=replace(topology, counts=np.where(asked > 0, asked, topology.counts)))
 
-        def kept(groups: Mapping[str, Index], renumber: Index) -> dict[str, Index]:
-            inside = {name: renumber[members] for name, members in groups.items()}
-            return {name: members[members >= 0] for name, members in inside.items() if (members >= 0).any()}
+    def with_gradings(self, gradings: Mapping[Ends, Grading | EdgeGrading]) -> BlockStructure:
+        """Return the structure with other gradings on some edges.
 
-        part = BlockTopology(
-            tuple(topology.vertex_names[v] for v in vertices),
-            new_vertex[topology.quads[blocks]],
-            new_vertex[topology.edges[edges]],
-            new_edge[topology.block_edges[blocks]],
-            np.unique(topology.chains[edges], return_inverse=True)[1].astype(np.int64),
-            topology.counts[edges],
-            kept(topology.block_groups, new_block),
-            kept(topology.edge_groups, new_edge),
-        )
-        curves = {int(new_edge[edge]): curve for edge, curve in self.curves.items() if new_edge[edge] >= 0}
-        return BlockStructure(part, self.vertices[vertices], curves, tuple(self.gradings[k] for k in edges))
+        Parameters
+        ----------
+        gradings : mapping of (vertex, vertex) to Grading
+            By the names of the vertices, in the direction of the pair.
 
-    def _blocks_of(self, groups: Iterable[str]) -> Index:
-        groups = (groups,) if isinstance(groups, str) else groups
-        known = self.topology.block_groups
-        members = []
-        for name in groups:
-            if name not in known:
-                raise TopologyError(f"no group of blocks named '{name}'{did_you_mean(name, known)}")
-            members.append(known[name])
-        if not members:
-            raise TopologyError(f"no group of blocks was asked for; expected some of: {', '.join(known)}.")
-        return np.unique(np.concatenate(members))
+        Raises
+        ------
+        TopologyError
+            If an edge does not exist or is given twice.
+        GradingError
+            If a grading is none.
+        """
+        pairs = tables.by_number(gradings, self.topology.vertex, "gradings")
+        graded = tables.directed_gradings(self.topology, pairs)
+        return replace(self, gradings=tuple(graded.get(k, old) for k, old in enumerate(self.gradings)))
 
-    def with_edge_group(self, name: str, edges: Sequence[int] | Index) -> BlockStructure:
+    def with_curves(self, curves: Mapping[Ends, Curve | None]) -> BlockStructure:
+        """Return the structure with another geometry of some edges.
+
+        Parameters
+        ----------
+        curves : mapping of (vertex, vertex) to Curve or None
+            By the names of the vertices, in the direction of the pair; None makes the edge straight.
+
+        Raises
+        ------
+        TopologyError
+            If an edge does not exist or is given twice, or a straight edge makes an angle of 180° or more.
+        CurveError
+            If a curve misses its vertices, or is none.
+        """
+        topology = self.topology
+        pairs = tables.by_number(curves, topology.vertex, "curves")
+        straight = {topology.edge(*pair)[0] for pair, curve in pairs.items() if curve is None}
+        curved = tables.directed_curves(topology, {pair: curve for pair, curve in pairs.items() if curve is not None})
+        if twice := sorted(straight & curved.keys()):
+            raise TopologyError(f"curves: edge {topology.edge_name(twice[0])} is given twice. Remove one.")
+        kept = {edge: curve for edge, curve in self.curves.items() if edge not in straight}
+        tables.check_curve_ends(topology, self.vertices, curved)
+        checks.check_geometry(topology, self.vertices, frozenset(kept | curved))
+        return replace(self, curves=kept | curved)
+
+    def with_block_group(self, name: str, blocks: Sequence[int] | Index) -> BlockStructure:
+        """Return the structure with one more group of named blocks, replacing one of that name.
+
+        Blocks stay in the other groups they are in; see `without_groups`.
+
+        Raises
+        ------
+        TopologyError
+            If there are no blocks, one does not exist, or one is listed twice.
+        """
+        return replace(self, topology=self.topology.with_block_group(name, blocks))
+
+    def with_edge_group(self, name: str, edges: Sequence[int] | Sequence[Ends] | Index) -> BlockStructure:
         """Return the structure with one more group of named edges, replacing one of that name.
+
+        Parameters
+        ----------
+        name : str
+        edges : sequence of int, or of (vertex, vertex)
+            Edges by number, or each by the names of its vertices in either order.
 
         Raises
         ------
         TopologyError
             If there are no edges, one does not exist, or one is listed twice.
         """
-        members = np.array(edges)
-        count = len(self.topology.edges)
-        whole = members.ndim == 1 and members.size > 0 and np.issubdtype(members.dtype, np.integer)
-        if not whole or members.min() < 0 or members.max() >= count or len(np.unique(members)) < len(members):
-            raise TopologyError(
-                f"edges.{name}: {members.tolist()}; expected numbers of edges from 0 to {count - 1}, at least one, "
-                "none twice."
-            )
-        groups = {**self.topology.edge_groups, name: members.astype(np.int64)}
-        return replace(self, topology=replace(self.topology, edge_groups=groups))
+        pairs = [edge for edge in edges if isinstance(edge, tuple)]
+        if not pairs:
+            return replace(self, topology=self.topology.with_edge_group(name, cast(Index, edges)))
+        numbered = tables.paths_by_number({name: pairs}, self.topology.vertex)[name]
+        members = tables.edges_between(self.topology, numbered, f"edges.{name}")
+        return replace(self, topology=self.topology.with_edge_group(name, members))
+
+    def without_groups(self, *names: str) -> BlockStructure:
+        """Return the structure without some names of blocks or edges; the blocks and edges stay.
+
+        Raises
+        ------
+        TopologyError
+            If a name does not exist.
+        """
+        return replace(self, topology=self.topology.without_groups(*names))
 
     def shared_edges(self, first: Iterable[str], second: Iterable[str]) -> Index:
         """Return the edges that have a block of one set of groups on one side and of the other on the other."""
-        touching = [np.unique(self.topology.block_edges[self._blocks_of(names)]) for names in (first, second)]
+        touching = [np.unique(self.topology.block_edges[self.topology.blocks_in(names)]) for names in (first, second)]
         return np.asarray(np.intersect1d(touching[0], touching[1]), dtype=np.int64)
-
-
-def _named(
-    topology: BlockTopology,
-    pairs: Iterable[tuple[str | int, str | int]],
-    vertex: Callable[[str | int, str], int],
-    place: str,
-) -> Index:
-    """Edges between pairs of vertices, each once."""
-    ends = [checks.edge_pair(pair, place) for pair in pairs]
-    edges = np.array([topology.edge(vertex(a, place), vertex(b, place))[0] for a, b in ends], dtype=np.int64)
-    if not edges.size:
-        raise TopologyError(f"{place}: no edges; expected at least one pair of vertices. Remove the name.")
-    found, uses = np.unique(edges, return_counts=True)
-    if (uses > 1).any():
-        raise TopologyError(f"{place}: edge {topology.edge_name(int(found[uses > 1][0]))} is listed twice. Remove one.")
-    return edges
-
-
-def _directed(
-    topology: BlockTopology,
-    pairs: Mapping[tuple[str | int, str | int], Thing],
-    vertex: Callable[[str | int, str], int],
-    place: str,
-    reverse: Callable[[Thing], Thing],
-) -> dict[int, Thing]:
-    """Attach things given by vertex pairs to directed edges, turning those given the other way round."""
-    result: dict[int, Thing] = {}
-    for pair, thing in pairs.items():
-        first, second = checks.edge_pair(pair, place)
-        edge, forward = topology.edge(vertex(first, place), vertex(second, place))
-        if not callable(thing):
-            error = CurveError if place == "curves" else GradingError
-            raise error(f"{place}: edge {topology.edge_name(edge)} has {thing!r}; expected a function of t in [0, 1].")
-        if edge in result:
-            raise TopologyError(f"{place}: edge {topology.edge_name(edge)} is given twice. Remove one.")
-        result[edge] = thing if forward else reverse(thing)
-    return result
-
-
-def _check_ends(topology: BlockTopology, vertices: Array, curves: Mapping[int, Curve]) -> None:
-    if not curves:
-        return
-    allowed = checks.tolerance(vertices)
-    for edge, curve in curves.items():
-        ends = topology.edges[edge]
-        found = curve.points[[0, -1]] if isinstance(curve, NodalCurve) else curve(np.array([0.0, 1.0]))
-        names = [topology.vertex_names[v] for v in ends]
-        checks.check_ends(found, vertices[ends], names, allowed, f"curve on edge {topology.edge_name(edge)}")

@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hoblock.curves import Curve
 from hoblock.errors import CurveError, TopologyError
+from hoblock.spelling import did_you_mean
 from hoblock.topology import BlockTopology
 
 Array = NDArray[np.float64]
@@ -22,6 +24,7 @@ __all__ = [
     "element_count",
     "quad_table",
     "tolerance",
+    "vertex_numbers",
     "vertex_table",
 ]
 
@@ -44,6 +47,18 @@ def vertex_table(vertices: Mapping[str, Sequence[float]] | Array) -> tuple[tuple
         raise TopologyError(f"vertex '{names[int(np.argmin(np.isfinite(positions).all(axis=1)))]}': not finite.")
     _check_distinct(names, positions)
     return names, positions
+
+
+def vertex_numbers(names: Sequence[str]) -> Callable[[str | int, str], int]:
+    """Return the function that tells the number of a vertex by its name, with the place for its error."""
+    number = {name: k for k, name in enumerate(names)}
+
+    def vertex(key: str | int, place: str) -> int:
+        if str(key) not in number:
+            raise TopologyError(f"{place}: no vertex named '{key}'{did_you_mean(str(key), names)}")
+        return number[str(key)]
+
+    return vertex
 
 
 def _pair(point: Sequence[float], name: str) -> tuple[float, float]:
@@ -109,7 +124,13 @@ def quad_table(
     return np.array(quads, dtype=np.int64), members
 
 
-def check_counter_clockwise(quads: Index, groups: Mapping[str, Index], names: Sequence[str], vertices: Array) -> None:
+def check_counter_clockwise(
+    quads: Index,
+    groups: Mapping[str, Index],
+    names: Sequence[str],
+    vertices: Array,
+    curves: Mapping[tuple[int, int], Curve],
+) -> None:
     """Blocks must have positive area; the first thing to ask, since orientation relies on it."""
     corners = vertices[quads]
     first, second = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]  # differences: safe far from 0
@@ -118,6 +139,8 @@ def check_counter_clockwise(quads: Index, groups: Mapping[str, Index], names: Se
     for name, members in groups.items():
         for k in np.flatnonzero(area[members] <= 0.0):
             block = members[k]
+            if area[block] + _bulge(quads[block], vertices, curves) > 1e-12 * extent[block]:
+                continue
             listed = ", ".join(names[v] for v in quads[block])
             if -area[block] <= 1e-12 * extent[block]:
                 raise TopologyError(
@@ -128,6 +151,18 @@ def check_counter_clockwise(quads: Index, groups: Mapping[str, Index], names: Se
                 f"blocks.{name}[{k}] ({listed}) is clockwise or inverted (signed area {area[block]:.3g}). "
                 "List its vertices counter-clockwise."
             )
+
+
+def _bulge(quad: Index, vertices: Array, curves: Mapping[tuple[int, int], Curve]) -> float:
+    """Area that curves add to that between the chords of a block's edges."""
+    area, t = 0.0, np.linspace(0.0, 1.0, 65)
+    for first, second in zip(quad.tolist(), np.roll(quad, -1).tolist(), strict=True):
+        for pair, sign in (((first, second), 1.0), ((second, first), -1.0)):
+            curve = curves.get(pair)
+            if callable(curve):
+                x, y = (np.asarray(curve(t), dtype=float) - vertices[pair[0]]).T
+                area += 0.5 * sign * float(x[:-1] @ y[1:] - x[1:] @ y[:-1])
+    return area
 
 
 def check_geometry(topology: BlockTopology, vertices: Array, curved: frozenset[int]) -> None:
@@ -215,8 +250,11 @@ def element_count(count: object, place: str) -> int:
     return int(count)
 
 
-def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], default: int) -> Index:
-    """Number of elements of every edge from the counts asked for on some; conflicts in a chain are errors."""
+def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], default: int | None) -> Index:
+    """Number of elements of every edge from the counts asked for on some; conflicts in a chain are errors.
+
+    Chains without a count get the default, or 0 if there is none.
+    """
     per_chain: dict[int, tuple[int, int]] = {}
     for (first, second), count in asked.items():
         edge, _ = topology.edge(first, second)
@@ -231,5 +269,5 @@ def chain_counts(topology: BlockTopology, asked: Mapping[tuple[int, int], int], 
                 "Change one of them, or remove it."
             )
         per_chain[chain] = (count, edge)
-    default = element_count(default, "default number of elements")
-    return np.array([per_chain.get(int(chain), (default, 0))[0] for chain in topology.chains], dtype=np.int64)
+    rest = 0 if default is None else element_count(default, "default number of elements")
+    return np.array([per_chain.get(int(chain), (rest, 0))[0] for chain in topology.chains], dtype=np.int64)

@@ -8,6 +8,8 @@ from hoblock.scene.curves import ArcAbout, ArcThrough, CurveScene, Formula, Shap
 from hoblock.scene.gradings import GradingScene
 from hoblock.scene.mesh import HIGHEST_ORDER, CountScene, MeshScene
 from hoblock.scene.paths import Path, Quad
+from hoblock.scene.quads import NodeOrder, QuadsScene, Spacing
+from hoblock.scene.template import TemplateScene
 
 __all__ = [
     "HIGHEST_ORDER",
@@ -18,7 +20,11 @@ __all__ = [
     "Formula",
     "GradingScene",
     "MeshScene",
+    "NodeOrder",
     "Path",
     "Quad",
+    "QuadsScene",
     "Shape",
+    "Spacing",
+    "TemplateScene",
 ]

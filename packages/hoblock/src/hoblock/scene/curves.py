@@ -83,7 +83,7 @@ class SplineThrough:
     """The cubic spline through points; ``ends``, ``tangents`` and ``parameter`` as of `hoblock.curves.Spline`."""
 
     points: tuple[Point, ...]
-    ends: Literal["not-a-knot", "natural", "clamped"]
+    ends: Literal["not-a-knot", "natural", "clamped", "periodic"]
     tangents: tuple[Point, Point] | None
     parameter: Literal["chord", "centripetal", "uniform"]
 
@@ -159,9 +159,12 @@ class CurveScene:
         Where it stands in the scene.
     by_length : bool
         Whether elements are distributed by arc length instead of the curve's parameter.
+    project : bool
+        Whether the inner vertices of the path are moved onto a curve with an extent of its own first.
     """
 
     on: tuple[Path, ...]
     shape: Shape
     place: str
     by_length: bool = False
+    project: bool = False

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from hoblock.orders import HIGHEST_ORDER
 from hoblock.scene.curves import CurveScene
 from hoblock.scene.gradings import GradingScene
 from hoblock.scene.paths import Path, Quad
+from hoblock.scene.quads import QuadsScene
+from hoblock.scene.template import TemplateScene
 
 __all__ = ["HIGHEST_ORDER", "CountScene", "MeshScene"]
-
-HIGHEST_ORDER = 32
-"""Highest polynomial order of the elements of a scene."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,11 @@ class MeshScene:
         One line for people, maybe empty.
     file : str
         Where the scene was read from.
+    template : TemplateScene or None
+        Where vertices, blocks and some of the named edges come from; it has curves, numbers of elements and
+        distributions of its own, which those of the scene replace.
+    quads : QuadsScene or None
+        The elements of a mesh file, from which vertices, blocks and some of the named edges come; it may have curves.
     """
 
     order: int
@@ -62,3 +67,5 @@ class MeshScene:
     elements: int = 1
     title: str = ""
     file: str = ""
+    template: TemplateScene | None = None
+    quads: QuadsScene | None = None
