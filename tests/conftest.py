@@ -7,6 +7,8 @@ from types import ModuleType
 
 import pytest
 
+_ORACLES = {"gmsh_module", "mfem", "vtk_module"}
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
@@ -14,6 +16,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="rewrite tests/public_api.txt from the packages instead of comparing with it",
     )
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what asks another program."""
+    for item in items:
+        if _ORACLES & set(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.oracle)
 
 
 def _import_or_skip(name: str) -> ModuleType:

@@ -8,7 +8,7 @@ from hoblock.curves import Arc
 from hoblock.errors import CurveError, ExpressionError, GradingError, TopologyError
 from hoblock.expressions import compile_expression
 from hoblock.generate import generate
-from hoblock.grading import Exponential, Reversed, Uniform
+from hoblock.grading import Exponential, Uniform, reverse
 from hoblock.io.scene import load_mesh_scene
 from hoblock.layout import layout
 from hoblock.scene import ArcAbout, ArcThrough, CountScene, CurveScene, Formula, GradingScene, MeshScene
@@ -32,8 +32,10 @@ def curve(on, shape, number=0):
     return CurveScene(tuple(map(tuple, on)), shape, f"mesh.curve[{number}]")
 
 
-def grading(on, kind, parameter=0.0, number=0):
-    return GradingScene(tuple(map(tuple, on)), kind, parameter, f"mesh.grading[{number}]")
+def grading(on, kind, parameter=None, number=0):
+    key = {"exponential": "a", "uniform": None}.get(kind, "m")
+    values = {} if key is None else {key: parameter}
+    return GradingScene(tuple(map(tuple, on)), kind, values, f"mesh.grading[{number}]")
 
 
 def count(on, elements, number=0):
@@ -105,7 +107,7 @@ def test_gradings_of_each_kind():
         ("a", "e", np.expm1(2 * s) / np.expm1(2)),
     ):
         edge, forward = edge_of(structure, first, second)
-        found = structure.gradings[edge] if forward else Reversed(structure.gradings[edge])
+        found = structure.gradings[edge] if forward else reverse(structure.gradings[edge])
         np.testing.assert_allclose(found(s), expected, atol=1e-14)
     assert structure.gradings[edge_of(structure, "e", "f")[0]] == Uniform()
 

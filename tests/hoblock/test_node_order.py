@@ -9,6 +9,7 @@ def lattice(order):
     return np.stack([i.ravel(), j.ravel()], axis=-1)
 
 
+@pytest.mark.oracle
 @pytest.mark.parametrize("order", range(1, 16))
 def test_vtk_order_is_that_of_its_lagrange_quadrilateral(order):
     vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel")
@@ -19,6 +20,7 @@ def test_vtk_order_is_that_of_its_lagrange_quadrilateral(order):
     np.testing.assert_array_equal(node_order(order, "vtk"), expected)
 
 
+@pytest.mark.oracle
 @pytest.mark.parametrize("order", range(1, 11))
 def test_gmsh_order_is_that_of_its_quadrangles_and_lines(order):
     gmsh = pytest.importorskip("gmsh")
@@ -38,6 +40,7 @@ def test_gmsh_order_is_that_of_its_quadrangles_and_lines(order):
     np.testing.assert_allclose(line, shapes["line"][4], atol=1e-12)
 
 
+@pytest.mark.oracle
 @pytest.mark.parametrize("order", [2, 3, 5, 12])
 def test_vtk_curves_have_their_ends_first(order):
     vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel")

@@ -150,3 +150,10 @@ def test_tensor_basis_counts_xi_fastest_and_differentiates_exactly(order, rng):
     gradient = np.einsum("kid,i->kd", tensor_gradient(nodes, points), f)
     exact = np.stack([order * x ** (order - 1) * y, x**order - 2 * order * y ** (order - 1)], axis=-1)
     np.testing.assert_allclose(gradient, exact, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", range(1, 17))
+def test_a_basis_at_its_own_nodes_is_the_identity_without_warnings(order):
+    """On any interval: the sum of the other barycentric terms may vanish there."""
+    for nodes in (gauss_lobatto(order), 0.5 * (gauss_lobatto(order) + 1.0), np.linspace(0.0, 3.0, order + 1)):
+        np.testing.assert_array_equal(lagrange(nodes, nodes), np.eye(order + 1))

@@ -1,3 +1,5 @@
+import numpy as np
+
 from hoblock.cli import main
 
 
@@ -21,3 +23,16 @@ def test_order_and_values_can_be_changed(scene, capsys):
     out = capsys.readouterr().out
     assert "elements         28 of order 5" in out
     assert "scaled Jacobian  min 1, mean 1" in out
+
+
+def test_the_distance_from_the_curves_is_reported(scene, capsys):
+    distances = []
+    for order in (1, 2, 6):
+        assert main(["check", str(scene), "--order", str(order), "--set", "mesh.elements=8"]) == 0
+        (line,) = (line for line in capsys.readouterr().out.splitlines() if line.startswith("curve fit"))
+        assert line.endswith("(1 curved edge, worst a–b)")
+        distances.append(float(line.split()[3]))
+    assert 0.2 * (1 - np.cos(np.pi / 16)) * 0.9 < distances[0] < 0.2 * (1 - np.cos(np.pi / 16))
+    assert distances[2] < 1e-8 < distances[1] < 1e-3
+    assert main(["check", str(scene), "--set", "mesh.curve=[]"]) == 0
+    assert "curve fit" not in capsys.readouterr().out

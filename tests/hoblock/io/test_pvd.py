@@ -1,3 +1,4 @@
+import os
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -54,3 +55,15 @@ def test_lists_of_files(tmp_path):
     assert entries(tmp_path / "a.pvd") == [(0.1 + 0.2, 'b"<&>.vtu')]
     with pytest.raises(FileNotFoundError):
         write_pvd(tmp_path / "missing" / "a.pvd", [])
+
+
+def test_an_interruption_leaves_the_series_before(tmp_path, monkeypatch):
+    write_pvd(tmp_path / "a.pvd", [(1.0, "a.vtu")])
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_pvd(tmp_path / "a.pvd", [(1.0, "a.vtu"), (2.0, "b.vtu")])
+    assert entries(tmp_path / "a.pvd") == [(1.0, "a.vtu")]

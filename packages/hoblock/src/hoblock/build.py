@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from hoblock.blocks import BlockStructure
 from hoblock.build_curves import build_curves
 from hoblock.build_gradings import build_gradings
+from hoblock.build_isolines import project_vertices
 from hoblock.build_paths import Pair, at, edge_pairs, pairs_of
+from hoblock.build_projections import project_onto_curves
+from hoblock.build_quads import build_quads
+from hoblock.build_template import build_template
 from hoblock.errors import TopologyError
 from hoblock.scene import CountScene, MeshScene
 from hoblock.topology import BlockTopology
@@ -44,6 +48,7 @@ def build_structure(scene: MeshScene) -> BlockStructure:
     GradingError
         If a grading is impossible.
     """
+    scene = project_onto_curves(project_vertices(scene))
     sides = {
         frozenset(pair) for quads in scene.blocks.values() for quad in quads for pair in pairs_of((*quad, quad[0]))
     }
@@ -53,9 +58,25 @@ def build_structure(scene: MeshScene) -> BlockStructure:
     for count in scene.counts:
         edge_pairs(count.on, sides, count.place)
     with at("mesh"):
-        structure = BlockStructure.build(scene.vertices, scene.blocks, edges=edges, curves=curves, gradings=gradings)
+        given = _given(scene)
+        if given is None:
+            structure = BlockStructure.build(
+                scene.vertices, scene.blocks, edges=edges, curves=curves, gradings=gradings
+            )
+        else:
+            structure = given.moved(np.array(list(scene.vertices.values())))
+            structure = structure.with_curves(curves).with_gradings(gradings)
+            for name, pairs in edges.items():
+                structure = structure.with_edge_group(name, pairs)
     counts = _chain_counts(structure.topology, scene)
     return replace(structure, topology=replace(structure.topology, counts=counts))
+
+
+def _given(scene: MeshScene) -> BlockStructure | None:
+    """Return the structure that a template or a mesh file brings, if there is one."""
+    if scene.template is not None:
+        return build_template(scene.template)
+    return None if scene.quads is None else build_quads(scene.quads)
 
 
 def _chain_counts(topology: BlockTopology, scene: MeshScene) -> Index:
@@ -74,4 +95,6 @@ def _chain_counts(topology: BlockTopology, scene: MeshScene) -> Index:
                     f"edges ({members}), which needs one number. Change or remove one."
                 )
     numbers = {chain: count.elements for chain, (count, _) in given.items()}
-    return np.array([numbers.get(int(chain), scene.elements) for chain in topology.chains], dtype=np.int64)
+    others = np.full(len(topology.edges), scene.elements) if scene.template is None else topology.counts
+    pairs = zip(topology.chains.tolist(), others.tolist(), strict=True)
+    return np.array([numbers.get(chain, other) for chain, other in pairs], dtype=np.int64)

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
 from hoblock.connectivity import Connectivity, Patch, connectivity
-from hoblock.edge_shape import edge_shape
-from hoblock.errors import GradingError
 from hoblock.grading import EdgeGrading, Grading, node_parameters
-from hoblock.scene import HIGHEST_ORDER
+from hoblock.orders import HIGHEST_ORDER
 from hoblock.topology import BlockTopology
 from hoblock.transfinite import TransfiniteWeights
 
@@ -189,18 +187,10 @@ def _family(
 
 def _resolved(structure: BlockStructure, edges: tuple[int, ...]) -> tuple[Grading, ...]:
     """Gradings of all edges, those that depend on their edge made for its present shape."""
-    if not edges:
-        return cast("tuple[Grading, ...]", structure.gradings)
     gradings = list(structure.gradings)
-    topology = structure.topology
     for edge in edges:
-        first, second = structure.vertices[topology.edges[edge]]
-        shape = edge_shape(first, second, structure.curves.get(edge))
-        try:
-            gradings[edge] = cast(EdgeGrading, structure.gradings[edge]).resolved(shape, int(topology.counts[edge]))
-        except GradingError as error:
-            raise GradingError(f"edge {topology.edge_name(edge)}: {error}") from error
-    return cast("tuple[Grading, ...]", tuple(gradings))
+        gradings[edge] = structure.resolved_grading(edge)
+    return cast("tuple[Grading, ...]", tuple(gradings) if edges else structure.gradings)
 
 
 def _layout(

@@ -99,10 +99,9 @@ def lagrange(nodes: Array, x: Array) -> Array:
     difference = x[:, None] - nodes[None, :]
     exact = np.abs(difference) < 1e-200  # division by less might overflow
     terms = _barycentric(nodes) / np.where(exact, 1.0, difference)
-    values = terms / terms.sum(axis=1, keepdims=True)
     hit = exact.any(axis=1)
-    values[hit] = exact[hit]
-    return np.asarray(values)
+    terms[hit] = exact[hit]
+    return np.asarray(terms / terms.sum(axis=1, keepdims=True))
 
 
 def differentiation_matrix(nodes: Array) -> Array:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sized
 from typing import Any
 
 from hoblock.cli.source import Source
+from hoblock.fit import fit_errors
 from hoblock.quality import MeasureSummary, QualitySummary, quality_summary
 
 __all__ = ["as_json", "as_text", "overview", "rows"]
@@ -43,10 +44,24 @@ def overview(source: Source) -> str:
         "skewness": f"max {summary.skewness.max:.4g}",
         "aspect ratio": f"max {summary.aspect_ratio.max:.4g}",
         "size jump": f"max {summary.size_jump.max:.4g}",
+        **_fit(source),
         "groups": _sizes(mesh.cell_groups),
         "edges": _sizes(mesh.edge_groups),
     }
     return rows(lines)
+
+
+def _fit(source: Source) -> dict[str, str]:
+    """How far the elements are from the curves at most, and where; nothing without curves."""
+    if source.structure is None:
+        return {}
+    errors = fit_errors(source.structure, source.mesh.order, source.mesh)
+    if not errors:
+        return {}
+    worst = max(errors, key=errors.__getitem__)
+    edges = f"{len(errors)} curved edge" + "s" * (len(errors) != 1)
+    name = source.structure.topology.edge_name(worst)
+    return {"curve fit": f"within {errors[worst]:.2g} ({edges}, worst {name})"}
 
 
 def rows(lines: Mapping[str, str]) -> str:

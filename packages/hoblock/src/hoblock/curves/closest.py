@@ -114,7 +114,8 @@ def cut_at(curve: Curve, points: ArrayLike, *, tolerance: float, names: Sequence
             x, y = np.asarray(curve(t[k : k + 1]))[0]
             raise CurveError(
                 f"'{names[k]}' at ({points[k, 0]:.10g}, {points[k, 1]:.10g}) is {gap:.2g} off the curve, whose closest "
-                f"point is ({x:.17g}, {y:.17g}); must lie on it within {tolerance:.1g}. Move it there."
+                f"point is ({x:.17g}, {y:.17g}); must lie on it within {tolerance:.1g}. Move it there, or let "
+                "it be moved (project = true in a scene)."
             )
     parameters = np.concatenate(([0.0], t, [1.0]))
     if not (np.diff(parameters) > 0.0).all():

@@ -27,8 +27,9 @@ class Spline:
     ----------
     points : array_like, shape (n, 2)
         Both ends and what lies between them, in the direction of the edge.
-    ends : {"not-a-knot", "natural", "clamped"}
-        Condition at the ends: third derivatives continuous at the points next to them; no curvature; given directions.
+    ends : {"not-a-knot", "natural", "clamped", "periodic"}
+        Condition at the ends: third derivatives continuous at the points next to them; no curvature; given directions;
+        a closed curve, whose first and last points are the same, that is smooth there too.
     tangents : pair of (float, float), optional
         Directions at the first and at the second end, of any length, for ``"clamped"``.
     parameter : {"chord", "centripetal", "uniform"}
@@ -41,15 +42,22 @@ class Spline:
     """
 
     points: Array
-    ends: Literal["not-a-knot", "natural", "clamped"] = "not-a-knot"
+    ends: Literal["not-a-knot", "natural", "clamped", "periodic"] = "not-a-knot"
     tangents: tuple[tuple[float, float], tuple[float, float]] | None = None
     parameter: Literal["chord", "centripetal", "uniform"] = "chord"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", plane_points(self.points, "spline", 2))
         distinct_neighbours(self.points, "spline")
-        if self.ends not in ("not-a-knot", "natural", "clamped"):
-            raise CurveError(f"spline: ends is {self.ends!r}; expected 'not-a-knot', 'natural' or 'clamped'.")
+        if self.ends not in ("not-a-knot", "natural", "clamped", "periodic"):
+            raise CurveError(
+                f"spline: ends is {self.ends!r}; expected 'not-a-knot', 'natural', 'clamped' or 'periodic'."
+            )
+        if self.ends == "periodic" and (self.points[0] != self.points[-1]).any():
+            raise CurveError(
+                f"spline: ends = 'periodic', but it runs from {tuple(self.points[0].tolist())} to "
+                f"{tuple(self.points[-1].tolist())}; expected the same point twice. Close it, or choose other ends."
+            )
         if self.parameter not in _POWERS:
             raise CurveError(f"spline: parameter is {self.parameter!r}; expected 'chord', 'centripetal' or 'uniform'.")
         if (self.ends == "clamped") != (self.tangents is not None):

@@ -28,7 +28,7 @@ def read_points(path: Path, place: str) -> tuple[tuple[float, float], ...]:
     Raises
     ------
     SceneError
-        If the file cannot be read or a line does not hold two finite numbers.
+        If the file cannot be read, a line does not hold two finite numbers, or there is none that does.
     """
     try:
         if path.stat().st_size > _LARGEST:
@@ -53,4 +53,6 @@ def read_points(path: Path, place: str) -> tuple[tuple[float, float], ...]:
         if not np.isfinite([x, y]).all():
             raise SceneError(f"{path}, line {number}: got {line.strip()!r}; expected finite numbers", place)
         points.append((x, y))
+    if not points:
+        raise SceneError(f"the file {path} holds no points; expected two numbers a line", place)
     return tuple(points)

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path as FilePath
 from types import MappingProxyType
 from typing import Any
 
+from hoblock.build_quads import build_quads
+from hoblock.build_template import build_template
 from hoblock.errors import SceneError
 from hoblock.expressions import RESERVED_NAMES, compile_expression
 from hoblock.io.scene_curves import read_curve
 from hoblock.io.scene_gradings import read_grading
 from hoblock.io.scene_paths import check_paths, check_vertices, paths_on
+from hoblock.io.scene_structure import read_quads_of
+from hoblock.io.scene_template import names_of, read_template
 from hoblock.io.table import Table
 from hoblock.io.toml import apply_overrides, naming_file, read_toml
 from hoblock.io.values import describe
-from hoblock.scene import HIGHEST_ORDER, CountScene, MeshScene, Path, Quad
+from hoblock.scene import HIGHEST_ORDER, CountScene, MeshScene, Path, Quad, TemplateScene
 
 __all__ = ["constants_of", "load_mesh_scene", "read_mesh_scene"]
 
@@ -67,24 +72,35 @@ def read_mesh_scene(data: Mapping[str, Any], file: str) -> MeshScene:
         If a key is missing, unknown, of the wrong type or out of range, or names a vertex that does not exist.
     """
     with naming_file(file):
+        folder = FilePath(file).parent
         whole = Table(data)
         title = whole.string("title", "")
         constants = constants_of(data)
         mesh = whole.table("mesh")
-        vertices = _vertices(mesh.table("vertices"), constants)
-        blocks = _blocks(mesh.table("blocks"), vertices)
-        edges = _edges(mesh.table("edges", required=False), vertices)
+        template = _template(mesh, constants) if mesh.has("template") else None
+        quads = read_quads_of(mesh, folder) if mesh.has("structure") else None
+        if quads is not None:
+            vertices, blocks, edges = names_of(build_quads(quads))
+        elif template is None:
+            vertices = _vertices(mesh.table("vertices"), constants)
+            blocks = _blocks(mesh.table("blocks"), vertices)
+            edges = {}
+        else:
+            vertices, blocks, edges = names_of(build_template(template))
+        edges |= _edges(mesh.table("edges", required=False), vertices)
         scene = MeshScene(
             order=mesh.integer("order", minimum=1, maximum=HIGHEST_ORDER),
             vertices=MappingProxyType(vertices),
             blocks=MappingProxyType(blocks),
             edges=MappingProxyType(edges),
-            curves=tuple(read_curve(table, vertices, edges, constants) for table in mesh.tables("curve")),
+            curves=tuple(read_curve(table, vertices, edges, constants, folder) for table in mesh.tables("curve")),
             counts=tuple(_count(table, vertices, edges) for table in mesh.tables("count")),
-            gradings=tuple(read_grading(table, vertices, edges) for table in mesh.tables("grading")),
+            gradings=tuple(read_grading(table, vertices, edges, constants) for table in mesh.tables("grading")),
             elements=mesh.integer("elements", 1, minimum=1),
             title=title,
             file=file,
+            template=template,
+            quads=quads,
         )
         mesh.finish()
     return scene
@@ -136,6 +152,18 @@ def _check_constant_name(name: str, place: str) -> None:
         raise SceneError(
             f"got the name {name!r}; expected letters a-z, digits and underscores, beginning with a letter", place
         )
+
+
+def _template(mesh: Table, constants: Mapping[str, float]) -> TemplateScene:
+    for key in ("structure", "vertices", "blocks", "elements"):
+        if mesh.has(key):
+            raise SceneError(
+                "got this beside [mesh.template], which brings vertices, blocks and numbers of elements of its own; "
+                "expected one of them. Refine a template with its parameters, [[mesh.count]], [[mesh.grading]], "
+                "[[mesh.curve]] and [mesh.edges]",
+                mesh.place_of(key),
+            )
+    return read_template(mesh.table("template"), constants)
 
 
 def _vertices(table: Table, constants: Mapping[str, float]) -> dict[str, tuple[float, float]]:

@@ -28,6 +28,7 @@ from hoblock.scene.curves import (
     PolylineThrough,
     Shape,
     SplineThrough,
+    WholeShape,
 )
 
 __all__ = ["read_curve"]
@@ -45,8 +46,10 @@ def read_curve(
     kind = table.string("kind", choices=tuple(_READERS))
     shape = _READERS[kind](_Keys(table, constants, folder))
     by_length = table.string("distribution", "parameter", choices=("parameter", "arc-length")) == "arc-length"
+    # a level set, which moves all its vertices, has read its own key of that name
+    project = table.boolean("project", False) if isinstance(shape, WholeShape) else False
     table.finish()
-    return CurveScene(on, shape, table.place, by_length)
+    return CurveScene(on, shape, table.place, by_length, project)
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,7 @@ def _polyline(keys: _Keys) -> Shape:
 
 
 def _spline(keys: _Keys) -> Shape:
-    ends = keys.table.string("ends", "not-a-knot", choices=("not-a-knot", "natural", "clamped"))
+    ends = keys.table.string("ends", "not-a-knot", choices=("not-a-knot", "natural", "clamped", "periodic"))
     parameter = keys.table.string("parameter", "chord", choices=("chord", "centripetal", "uniform"))
     tangents = None
     if keys.table.has("tangents"):
@@ -119,7 +122,7 @@ def _spline(keys: _Keys) -> Shape:
         raise SceneError("expected both ends = 'clamped' and tangents, or neither", keys.table.place)
     return SplineThrough(
         keys.points(),
-        cast('Literal["not-a-knot", "natural", "clamped"]', ends),
+        cast('Literal["not-a-knot", "natural", "clamped", "periodic"]', ends),
         tangents,
         cast('Literal["chord", "centripetal", "uniform"]', parameter),
     )

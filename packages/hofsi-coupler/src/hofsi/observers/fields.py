@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import QuadMesh
+from hoblock.io.pvd import write_pvd
 from hofsi.build import Problem
 from hofsi.fem.resampling import pressure_at_nodes
-from hofsi.io.pvd import write_pvd
 from hofsi.io.vtu import require_vtk, write_vtu
 from hofsi.records import StepRecord
 
