@@ -7,6 +7,7 @@ from hoblock.generate import generate
 from hoblock.io.mesh_file import FORMATS, read_mesh, write_mesh
 from hoblock.io.npz import read_npz
 from hoblock.mesh import QuadMesh
+from hoblock.quality import certify, element_areas
 
 READABLE = sorted(name for name, form in FORMATS.items() if form.read is not None)
 
@@ -143,3 +144,22 @@ def test_round_trip_of_any_small_mesh(tmp_path):
             assert_same(read_mesh(tmp_path / "m", format=format), mesh)
 
     check()
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
+def test_elements_listed_clockwise_are_turned_but_inverted_ones_stay_invalid(suffix, layouts, tmp_path):
+    mesh = generate(layouts.square(counts=3), 2)
+    points = np.array(mesh.points)
+    corner = mesh.cells[4, 8]
+    points[corner] = points[mesh.cells[4, 0]] - 0.1  # the middle element is turned over
+    folded = mesh.with_points(points)
+    expected = certify(folded).counts
+    assert expected["invalid"] >= 1
+    transposed = np.arange(9).reshape(3, 3).T.ravel()
+    cells = np.array(mesh.cells)
+    cells[[0, 5]] = cells[[0, 5]][:, transposed]
+    write_mesh(tmp_path / f"mixed{suffix}", QuadMesh(points, cells, 2, {}, {}))
+    back = read_mesh(tmp_path / f"mixed{suffix}")
+    assert certify(back).counts == expected
+    assert element_areas(back).sum() == pytest.approx(1.0, rel=1e-12)
+    assert element_areas(back).min() == pytest.approx(element_areas(folded).min(), rel=1e-12)

@@ -48,8 +48,8 @@ def assembled(
 ) -> QuadMesh:
     """Make a mesh of what a file holds.
 
-    Elements that run clockwise are turned, nodes that no element uses are left out, and the geometry is resampled on
-    GLL nodes (exactly: an element map is a polynomial).
+    Elements that are listed clockwise are turned (not single ones that are turned over), nodes that no element uses are
+    left out, and the geometry is resampled on GLL nodes (exactly: an element map is a polynomial).
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def assembled(
     number = np.cumsum(used) - 1
     cells = number[cells]
     flat = resampled(_planar(path, points[used]), cells, order, nodes, gauss_lobatto(order))
-    clockwise = _signed_areas(flat, cells, order) < 0
+    clockwise = _clockwise(cells[:, corner_nodes(order)], _signed_areas(flat, cells, order))
     transposed = np.arange((order + 1) ** 2).reshape(order + 1, -1).T.ravel()
     cells[clockwise] = cells[clockwise][:, transposed]
     sides = {name: _turned(members, clockwise) for name, members in edge_groups.items()}
@@ -136,6 +136,35 @@ def _signed_areas(points: Array, cells: Index, order: int) -> Array:
     sides = sides - sides[:, :1, :1]
     parts = np.einsum("esk,kl,esl->es", sides[..., 0], Q, sides[..., 1], optimize=True)
     return np.asarray(parts @ np.array([1.0, 1.0, -1.0, -1.0]))
+
+
+def _clockwise(corners: Index, areas: Array) -> Bool:
+    """Elements that a file lists the other way round than the rest of their connected part.
+
+    Neighbours run their common side in opposite directions. A part counts as clockwise by its whole area, so that
+    single elements that are turned over stay as they are, to be found invalid.
+    """
+    if not (areas < 0.0).any():
+        return np.zeros(len(areas), dtype=bool)
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    pairs = corners[:, _CCW].reshape(-1, 2)
+    count = int(corners.max()) + 1
+    keys = pairs.min(axis=1) * count + pairs.max(axis=1)
+    order = np.argsort(keys, kind="stable")
+    shared = np.flatnonzero(keys[order[1:]] == keys[order[:-1]])
+    first, second = order[shared], order[shared + 1]
+    differ = pairs[first, 0] == pairs[second, 0]  # one of the two has to be turned
+    n = len(areas)
+    ends = [np.concatenate([first // 4, first // 4 + n]), np.concatenate([second // 4, second // 4 + n])]
+    ends[1] = (ends[1] + np.tile(differ, 2) * n) % (2 * n)
+    # Two copies of each element, as listed and turned; a part of the copies is one way to orient a part of the mesh.
+    graph = coo_array((np.ones(len(ends[0])), tuple(ends)), shape=(2 * n, 2 * n))
+    _, part = connected_components(graph, directed=False)
+    total = np.bincount(part, weights=np.concatenate([areas, -areas]))
+    listed, turned = total[part[:n]], total[part[n:]]
+    return np.where(part[:n] == part[n:], areas < 0.0, turned > listed)
 
 
 def _turned(sides: Index, clockwise: Bool) -> Index:
