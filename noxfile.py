@@ -110,6 +110,6 @@ def benchmarks(session: nox.Session) -> None:
 
 @nox.session
 def docs(session: nox.Session) -> None:
-    """Check links and snippets of all Markdown pages."""
-    session.install("pytest")
+    """Check links and snippets of all Markdown pages, and run the Python of those about meshing."""
+    install_packages(session, "pytest")
     session.run("pytest", "tests/test_docs.py", *session.posargs)

@@ -13,6 +13,7 @@ import pytest
 
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 TINY = {
+    "curve_accuracy": ["--orders", "1", "3", "--elements", "4", "8", "--kinds", "arc", "spline", "nurbs by arc length"],
     "fluid_work_precision": ["--orders", "2", "4", "--k", "1"],
     "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],
     "mesh_scaling": ["--nodes", "2000", "9000", "--order", "2", "--repeats", "2"],
@@ -75,3 +76,14 @@ def test_errors_of_the_cylinder_fall_with_the_order(measured):
     for name in ("c_D", "c_L", "dp"):
         assert fourth[f"error of {name}"] < 0.1 * second[f"error of {name}"]
     assert fourth["error of c_D"] < 1e-3
+
+
+def test_curves_are_met_at_the_order_of_the_elements(measured):
+    result, _, _ = measured("curve_accuracy")
+    rows = {(row["curve"], row["order"]): row for row in result.rows}
+    assert len(rows) == 6
+    for name in ("area", "perimeter"):
+        assert rows["arc", 1][f"{name} order"] == pytest.approx(2.0, abs=0.05)
+        assert rows["arc", 3][f"{name} order"] == pytest.approx(6.0, abs=0.2)
+        assert rows["spline", 3][f"{name} order"] == "round-off"
+        assert rows["nurbs by arc length", 3][name] < 0.1 * rows["nurbs by arc length", 1][name]

@@ -1,10 +1,11 @@
-"""The Markdown pages: their links lead somewhere, their Python and TOML can be read."""
+"""The Markdown pages: their links lead somewhere, their Python and TOML can be read; that of the meshing pages runs."""
 
 from __future__ import annotations
 
 import ast
 import json
 import re
+import runpy
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -80,6 +81,16 @@ def test_snippets_can_be_read(page: Path) -> None:
         except (SyntaxError, ValueError) as error:
             unreadable.append(f"{fence['language']} snippet {code.splitlines()[0]!r}: {error}")
     assert unreadable == []
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.parent.name == "meshing"], ids=_name)
+def test_python_of_a_meshing_page_runs_from_top_to_bottom(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    snippets = [fence["code"] for fence in FENCE.finditer(_read(page)) if fence["language"] == "python"]
+    (tmp_path / "page.py").write_text("\n".join(snippets), encoding="utf-8")
+    runpy.run_path(str(tmp_path / "page.py"))
 
 
 @pytest.mark.parametrize(
