@@ -354,3 +354,8 @@ def test_a_block_whose_chords_have_no_area_may_be_curved():
     assert len(structure.curves) == 2
     with pytest.raises(TopologyError, match="is clockwise or inverted"):
         BlockStructure.build(vertices, [tuple("abcd")], curves={("d", "c"): inner})
+
+
+def test_edges_by_number_and_by_names_are_not_mixed(layouts):
+    with pytest.raises(TopologyError, match=r"edges.wall: 0; expected a pair of vertices"):
+        layouts.square().with_edge_group("wall", [("a", "b"), 0])

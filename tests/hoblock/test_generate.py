@@ -431,3 +431,54 @@ def test_different_gradings_need_no_temporary_arrays_of_the_size_of_the_mesh():
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 1.5 * buffer.nbytes
+
+
+def test_vertices_that_are_infinite_are_invalid_without_warnings(layouts):
+    structure = layouts.square(counts=2)
+    vertices = np.array(structure.vertices)
+    vertices[0] = np.inf
+    with pytest.raises(InvalidMeshError, match="not finite"):
+        generate(structure.moved(vertices), 2)
+
+
+def test_a_study_of_gradings_does_not_fill_the_memory(layouts):
+    structure = layouts.square(counts=3)
+    first = layout(structure.with_gradings({("a", "b"): Exponential(0.1)}), 2)
+    kept = weakref.ref(first.batches[0])
+    numbers = first.numbers
+    del first
+    for a in range(40):
+        assert layout(structure.with_gradings({("a", "b"): Exponential(1.0 + a / 40)}), 2).numbers is numbers
+    gc.collect()
+    assert kept() is None
+
+
+def test_arrays_of_the_caller_stay_writeable_and_nodal_curves_their_own():
+    cells, group = np.array([[0, 1, 2, 3]]), np.array([0])
+    points = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
+    mesh = QuadMesh(points, cells, 1, {"all": group}, {})
+    assert cells.flags.writeable
+    assert group.flags.writeable
+    assert not mesh.cells.flags.writeable
+    assert not mesh.cell_groups["all"].flags.writeable
+    nodes = np.array([(0.0, 0.0), (0.5, 0.1), (1.0, 0.0)])
+    curve = NodalCurve(nodes, 2)
+    nodes[1] = 7.0
+    assert curve.points[1].tolist() == [0.5, 0.1]
+
+
+def test_gradings_and_curves_of_wrong_kinds(layouts):
+    class NoHash:
+        __hash__ = None
+
+        def __call__(self, s):
+            return s
+
+    with pytest.raises(GradingError, match=r"edge a–b has .*, which has no hash"):
+        layouts.square(gradings={("a", "b"): NoHash()})
+    with pytest.raises(CurveError, match=r"edge a–b has <class .*; expected a function"):
+        layouts.square(curves={("a", "b"): Arc})
+    with pytest.raises(GradingError, match=r"edge a–b: .* fails on an array of parameters"):
+        generate(layouts.square(counts=3, gradings={("a", "b"): lambda s: float(s)}), 2)
+    with pytest.raises(GradingError, match=r"edge a–b: .* returned shape \(\) for 4 parameters"):
+        generate(layouts.square(counts=3, gradings={("a", "b"): lambda s: 0.5}), 2)

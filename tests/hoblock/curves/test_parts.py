@@ -7,6 +7,7 @@ from hoblock.curves import (
     Affine,
     Arc,
     Between,
+    LagrangeEdge,
     NodalCurve,
     Nurbs,
     Parametric,
@@ -118,6 +119,38 @@ def test_closest_places(rng):
     t, distance = closest_parameters(ARC, feet)  # on the curve the parameter itself is exact
     np.testing.assert_allclose(t, angle, atol=1e-14)
     assert distance.max() < 1e-14
+
+
+def test_closest_places_on_curves_that_meander_and_come_near_themselves(rng):
+    for _ in range(40):
+        points = np.stack([np.sort(rng.uniform(0.0, 1.0, 7)), rng.uniform(-0.4, 0.4, 7)], axis=-1)
+        for curve in (LagrangeEdge(points), Spline(points, parameter="uniform"), Polyline(points)):
+            there = curve(rng.uniform(0.0, 1.0, 5))
+            t, distance = closest_parameters(curve, there)
+            assert distance.max() < 1e-12
+            np.testing.assert_allclose(curve(t), there, atol=1e-12)
+
+
+@pytest.mark.parametrize("number", [0, 1, 4000])
+def test_closest_places_of_none_one_and_many_points(number, rng):
+    points = rng.uniform(-5.0, 5.0, (number, 2))
+    t, distance = closest_parameters(Arc((0.0, 0.0), 1.0, -1.0, 2.0), points)
+    angle = np.clip(np.arctan2(points[:, 1], points[:, 0]), -1.0, 1.0)
+    exact = np.hypot(points[:, 0] - np.cos(angle), points[:, 1] - np.sin(angle))
+    np.testing.assert_allclose(distance, exact, atol=1e-13)
+    assert t.shape == (number,)
+
+
+def test_the_nearer_side_of_a_kink_is_found():
+    kink = Polyline([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])
+    t, distance = closest_parameters(kink, [(0.995, 0.98), (1.006, 0.98)])
+    assert t[0] < 0.5 < t[1]
+    np.testing.assert_allclose(distance, [0.015 / np.sqrt(2.0), 0.014 / np.sqrt(2.0)], atol=1e-14)
+
+
+def test_points_that_are_not_finite_have_no_closest_place():
+    with pytest.raises(CurveError, match=r"closest place on a curve: points\[1\] is \[1\.0, nan\]; expected finite"):
+        closest_parameters(ARC, [(0.0, 0.0), (1.0, np.nan)])
 
 
 def test_a_curve_cut_at_points_on_it():

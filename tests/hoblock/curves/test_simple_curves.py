@@ -83,9 +83,12 @@ def test_nodal_curve_interpolates_its_nodes_and_is_a_polynomial_in_each_element(
     np.testing.assert_allclose(differences, 0.0, atol=1e-11)
 
 
-def test_nodal_curve_keeps_its_points_without_a_copy():
+def test_nodal_curve_has_points_of_its_own():
     points = np.zeros((5, 2))
-    assert NodalCurve(points, 2).points is points
+    curve = NodalCurve(points, 2)
+    points[0] = 1.0
+    assert not curve.points.any()
+    assert not curve.points.flags.writeable
 
 
 def test_reversed_nodal_curves_stay_nodal():

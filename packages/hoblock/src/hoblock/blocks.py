@@ -17,6 +17,7 @@ from hoblock.curves import Curve
 from hoblock.edge_shape import edge_shape
 from hoblock.edge_tables import Ends
 from hoblock.errors import GradingError, TopologyError
+from hoblock.frozen_mappings import FrozenMappings
 from hoblock.grading import EdgeGrading, Grading
 from hoblock.moved_curves import moved_curves
 from hoblock.topology import BlockTopology
@@ -29,7 +30,7 @@ __all__ = ["BlockStructure"]
 
 
 @dataclass(frozen=True, eq=False)
-class BlockStructure:
+class BlockStructure(FrozenMappings):
     """A coarse quad mesh whose edges carry geometry and grading.
 
     Use :meth:`build` to make one; the constructor takes parts that have been checked.
@@ -274,7 +275,7 @@ class BlockStructure:
         pairs = [edge for edge in edges if isinstance(edge, tuple)]
         if not pairs:
             return replace(self, topology=self.topology.with_edge_group(name, cast(Index, edges)))
-        numbered = tables.paths_by_number({name: pairs}, self.topology.vertex)[name]
+        numbered = tables.paths_by_number({name: cast(list[Ends], list(edges))}, self.topology.vertex)[name]
         members = tables.edges_between(self.topology, numbered, f"edges.{name}")
         return replace(self, topology=self.topology.with_edge_group(name, members))
 

@@ -90,6 +90,7 @@ def connectivity(topology: BlockTopology, order: int) -> Connectivity:
     cells = np.empty((int(cell_starts[-1]), (order + 1) ** 2), dtype=np.int64)
     for patch in patches:
         _fill_cells(cells, cell_starts, patch, order)
+    cells.setflags(write=False)  # meshes share it
     return Connectivity(
         order,
         cells,

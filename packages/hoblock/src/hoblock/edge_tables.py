@@ -78,7 +78,7 @@ def directed_curves(topology: BlockTopology, curves: Mapping[Pair, Curve]) -> di
     """
     result: dict[int, Curve] = {}
     for edge, forward, curve in _by_edge(topology, curves, "curves"):
-        if not callable(curve):
+        if isinstance(curve, type) or not callable(curve):
             raise CurveError(
                 f"curves: edge {topology.edge_name(edge)} has {curve!r}; expected a function of t in [0, 1]."
             )
@@ -103,6 +103,11 @@ def directed_gradings(
         if isinstance(grading, type) or not (callable(grading) or isinstance(grading, EdgeGrading)):
             raise GradingError(
                 f"gradings: edge {topology.edge_name(edge)} has {grading!r}; expected a function of t in [0, 1]."
+            )
+        if type(grading).__hash__ is None:
+            raise GradingError(
+                f"gradings: edge {topology.edge_name(edge)} has {grading!r}, which has no hash. Make its class a "
+                "frozen dataclass, or wrap a function of it in grading.Function."
             )
         result[edge] = grading if forward else reverse_grading(grading)
     return result

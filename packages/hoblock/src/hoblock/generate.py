@@ -125,8 +125,17 @@ def changed_blocks(previous: BlockStructure, structure: BlockStructure) -> NDArr
 
 
 def _fill(plan: Layout, structure: BlockStructure, points: Array, changed: NDArray[np.bool_] | None) -> None:
-    """Write the nodes of all edges and of the changed blocks into ``points``."""
-    points[plan.edge_nodes] = _edge_points(plan, structure)
+    """Write the nodes of all edges and of the changed blocks into ``points``.
+
+    Vertices that are not finite make nodes that are not, without warnings: the certificate tells.
+    """
+    with np.errstate(invalid="ignore", over="ignore"):
+        points[plan.edge_nodes] = _edge_points(plan, structure)
+        _fill_batches(plan, points, changed)
+
+
+def _fill_batches(plan: Layout, points: Array, changed: NDArray[np.bool_] | None) -> None:
+    """Write the inner nodes of the changed blocks, or of all."""
     for batch in plan.batches:
         part = batch
         if changed is not None:

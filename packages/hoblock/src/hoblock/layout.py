@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from threading import RLock
 from typing import cast
 from weakref import WeakKeyDictionary
 
@@ -20,6 +21,9 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 __all__ = ["Batch", "Layout", "layout"]
+
+_KEPT_FAMILIES = 16
+"""Combinations of gradings and order kept of one topology: a study of gradings does not fill the memory."""
 
 _KEPT_POSITIONS = 4
 """Layouts of one structure kept where gradings depend on lengths: the last few positions of a moving mesh."""
@@ -131,12 +135,18 @@ def layout(structure: BlockStructure, order: int) -> Layout:
         raise ValueError(f"order is {order!r}; expected an integer from 1 to {HIGHEST_ORDER}.")
     if not 1 <= order <= HIGHEST_ORDER:
         raise ValueError(f"order is {order}; expected an integer >= 1 and <= {HIGHEST_ORDER}.")
-    known = _FAMILIES.setdefault(structure.topology, {})
-    key = (structure.gradings, int(order))
-    if key not in known:
-        known[key] = _family(structure.topology, structure.gradings, int(order), tuple(known.values()))
-    family = known[key]
-    return family.layout(structure.topology, _resolved(structure, family.to_resolve))
+    with _LOCK:
+        known = _FAMILIES.setdefault(structure.topology, {})
+        key = (structure.gradings, int(order))
+        family = known.pop(key, None)
+        if family is None:
+            family = _family(structure.topology, structure.gradings, int(order), tuple(known.values()))
+        known[key] = family  # the latest comes last
+        while len(known) > _KEPT_FAMILIES:
+            del known[next(iter(known))]
+    gradings = _resolved(structure, family.to_resolve)
+    with _LOCK:
+        return family.layout(structure.topology, gradings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +179,8 @@ class _Family:
             del self.known[next(iter(self.known))]
         return found
 
+
+_LOCK = RLock()  # threads may mesh structures of one topology
 
 # A layout lives as long as its topology: long studies over many structures keep none of them.
 _FAMILIES: WeakKeyDictionary[BlockTopology, dict[tuple[tuple[Grading | EdgeGrading, ...], int], _Family]] = (

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from hoblock.frozen_mappings import FrozenMappings
 from hoblock.numbering import corner_nodes, side_nodes
 
 Array = NDArray[np.float64]
@@ -18,7 +19,7 @@ __all__ = ["QuadMesh"]
 
 
 @dataclass(frozen=True, eq=False)
-class QuadMesh:
+class QuadMesh(FrozenMappings):
     """Elements of order p with (p + 1)² GLL nodes each.
 
     Attributes
@@ -44,13 +45,12 @@ class QuadMesh:
         points = self.points.view()
         points.setflags(write=False)
         object.__setattr__(self, "points", points)
-        self.cells.setflags(write=False)
+        object.__setattr__(self, "cells", _read_only(self.cells))
         for name in ("cell_groups", "edge_groups"):
             groups = getattr(self, name)
-            for members in groups.values():
-                members.setflags(write=False)
             if not isinstance(groups, MappingProxyType):
-                object.__setattr__(self, name, MappingProxyType(dict(groups)))
+                kept = {key: _read_only(members) for key, members in groups.items()}
+                object.__setattr__(self, name, MappingProxyType(kept))
 
     @property
     def corners(self) -> Index:
@@ -78,3 +78,12 @@ class QuadMesh:
         """Nodes on a named group of element sides, ascending, each once."""
         sides = self.edge_groups[name]
         return np.unique(self.cells[sides[:, 0, None], side_nodes(self.order)[sides[:, 1]]])
+
+
+def _read_only(array: Index) -> Index:
+    """Return the array if it is read-only, else a view of it that is; the caller's array stays as it was."""
+    if not array.flags.writeable:
+        return array
+    view = array.view()
+    view.setflags(write=False)
+    return view

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.errors import TopologyError
+from hoblock.frozen_mappings import FrozenMappings
 from hoblock.spelling import did_you_mean
 
 Array = NDArray[np.float64]
@@ -19,7 +20,7 @@ __all__ = ["BlockTopology", "connected"]
 
 
 @dataclass(frozen=True, eq=False)
-class BlockTopology:
+class BlockTopology(FrozenMappings):
     """What does not change when blocks move: quads, directed edges, chains, element counts, names.
 
     Attributes

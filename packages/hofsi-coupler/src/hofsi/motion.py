@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hoblock import (
     BlockStructure,
+    GradingError,
     InvalidMeshError,
     MoverError,
     QuadMesh,
@@ -137,7 +138,7 @@ class MeshMotion:
             lower = float(det_jacobian_bounds(mesh)[0].min())
             if not lower > 0.0:
                 raise_if_invalid(mesh, structure)
-        except (InvalidMeshError, MoverError) as error:
+        except (GradingError, InvalidMeshError, MoverError) as error:
             raise MeshMotionError(
                 f"{error} Use smaller steps, another [mover], or more blocks around the moving body.",
                 "invalid mesh",

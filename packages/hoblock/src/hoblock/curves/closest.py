@@ -13,11 +13,12 @@ from hoblock.curves.piece import piece
 from hoblock.errors import CurveError
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 __all__ = ["closest_parameters", "cut_at"]
 
-_SAMPLES = 64
-"""Samples of each smooth part of the curve."""
+_SAMPLES, _SAMPLES_OF_PART = 1024, 64
+"""Samples of the whole curve, so that hairpins show, and of each smooth part at least."""
 _AT_ONCE = 1 << 20
 """Distances from samples computed at a time: bounds the memory, 16 MB."""
 _SECTIONS = 80
@@ -28,7 +29,7 @@ _GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 def closest_parameters(curve: Curve, points: ArrayLike) -> tuple[Array, Array]:
     """Parameters of the places on a curve that are closest to points, and their distances.
 
-    Samples of the curve tell where; golden sections on both sides of the best sample find the minimum. Distances are
+    Samples of the curve tell where; golden sections on both sides of the best samples find the minimum. Distances are
     accurate to round-off, and so are parameters of points on the curve; those of points off it to about 1e-8.
 
     Parameters
@@ -50,28 +51,43 @@ def closest_parameters(curve: Curve, points: ArrayLike) -> tuple[Array, Array]:
         bad = int(np.argmin(np.isfinite(points).all(axis=1)))
         raise CurveError(f"closest place on a curve: points[{bad}] is {points[bad].tolist()}; expected finite numbers.")
     ends = np.concatenate(([0.0], breaks_of(curve), [1.0]))
-    grid = np.unique(np.concatenate([np.linspace(a, b, _SAMPLES + 1) for a, b in pairwise(ends)]))
-    best = _best_samples(np.asarray(curve(grid)), points)
+    count = max(_SAMPLES // (len(ends) - 1), _SAMPLES_OF_PART)
+    grid = np.unique(np.concatenate([np.linspace(a, b, count + 1) for a, b in pairwise(ends)]))
+    which, sample = _candidates(np.asarray(curve(grid)), points)
+    places = points[which]
 
     def distance(t: Array) -> Array:
-        return np.asarray(np.hypot(*(np.asarray(curve(t)) - points).T))
+        return np.asarray(np.hypot(*(np.asarray(curve(t)) - places).T))
 
-    before, after = grid[np.maximum(best - 1, 0)], grid[np.minimum(best + 1, len(grid) - 1)]
-    brackets = (before, grid[best]), (grid[best], after)
-    candidates = np.stack([grid[best], *(_golden_sections(distance, low, high) for low, high in brackets)])
-    found = np.stack([distance(t) for t in candidates])
-    choice = found.argmin(axis=0)[None]
-    return np.take_along_axis(candidates, choice, axis=0)[0], np.take_along_axis(found, choice, axis=0)[0]
+    before, after = grid[np.maximum(sample - 1, 0)], grid[np.minimum(sample + 1, len(grid) - 1)]
+    brackets = (before, grid[sample]), (grid[sample], after)
+    t = np.concatenate([grid[sample], *(_golden_sections(distance, low, high) for low, high in brackets)])
+    found, which = np.concatenate([distance(part) for part in np.split(t, 3)]), np.tile(which, 3)
+    order = np.lexsort((found, which))
+    best = order[np.searchsorted(which[order], np.arange(len(points)))]
+    return t[best], found[best]
 
 
-def _best_samples(samples: Array, points: Array) -> NDArray[np.int64]:
-    """Return the number of the sample that is closest to each point."""
-    best = np.empty(len(points), dtype=np.int64)
-    step = max(1, _AT_ONCE // len(samples))
-    for start in range(0, len(points), step):
-        part = points[start : start + step, None] - samples[None]
-        best[start : start + step] = np.einsum("pnd,pnd->pn", part, part).argmin(axis=1)
-    return best
+def _candidates(samples: Array, points: Array) -> tuple[Index, Index]:
+    """Pairs of a point and a sample of the curve near which the closest place may be, at least one a point.
+
+    The curve comes nearer between samples by no more than about their distance; all minima that are less than that
+    behind the smallest one stay in play, since another branch of the curve may be sampled more luckily.
+    """
+    steps = np.hypot(*np.diff(samples, axis=0).T)
+    reach = np.maximum(np.append(steps, 0.0), np.append(0.0, steps))
+    found: list[tuple[Index, Index]] = []
+    for start in range(0, len(points), max(1, _AT_ONCE // len(samples))):
+        part = points[start : start + max(1, _AT_ONCE // len(samples)), None] - samples[None]
+        distance = np.hypot(part[..., 0], part[..., 1])
+        padded = np.pad(distance, ((0, 0), (1, 1)), constant_values=np.inf)
+        minimum = (distance <= padded[:, :-2]) & (distance <= padded[:, 2:])
+        k, sample = np.nonzero(minimum & (distance - reach <= distance.min(axis=1, keepdims=True)))
+        found.append((start + k, sample))
+    return (
+        np.concatenate([k for k, _ in found] or [np.zeros(0, dtype=np.int64)]),
+        np.concatenate([sample for _, sample in found] or [np.zeros(0, dtype=np.int64)]),
+    )
 
 
 def _golden_sections(distance: Callable[[Array], Array], low: Array, high: Array) -> Array:

@@ -36,7 +36,8 @@ class NodalCurve:
     def __post_init__(self) -> None:
         if self.order < 1:
             raise CurveError(f"nodal curve: order is {self.order}; expected an integer >= 1.")
-        points = np.asarray(self.points, dtype=float)
+        points = np.array(self.points, dtype=float)
+        points.setflags(write=False)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or (len(points) - 1) % self.order:
             raise CurveError(
                 f"nodal curve: points have shape {points.shape}; expected (n*{self.order} + 1, 2) for n elements."

@@ -26,7 +26,16 @@ def element_corners(grading: Grading, count: int, place: str = "grading") -> Arr
         another number of elements.
     """
     _check_count(grading, count, place)
-    corners = np.array(grading(np.linspace(0.0, 1.0, count + 1)), dtype=float)
+    try:
+        corners = np.array(grading(np.linspace(0.0, 1.0, count + 1)), dtype=float)
+    except (TypeError, ValueError) as error:
+        raise GradingError(
+            f"{place}: {grading} fails on an array of parameters: {error}. Use NumPy's functions."
+        ) from error
+    if corners.shape != (count + 1,):
+        raise GradingError(
+            f"{place}: {grading} returned shape {corners.shape} for {count + 1} parameters; expected the same shape."
+        )
     if abs(corners[0]) > 1e-12 or abs(corners[-1] - 1.0) > 1e-12:
         raise GradingError(f"{place}: {grading} maps 0 and 1 to {corners[0]:g} and {corners[-1]:g}; must keep both.")
     corners[0], corners[-1] = 0.0, 1.0
