@@ -340,7 +340,7 @@ def test_edges_tell_their_points_and_gradings(layouts):
     length = 2.0 * np.arcsin(0.5 / arc.radius) * arc.radius
     assert corners[0] == pytest.approx(0.1 / length, rel=1e-9)
     too_high = structure.with_gradings({("a", "b"): BoundaryLayer(7.0)})
-    with pytest.raises(GradingError, match="edge a–b: boundary layer: the first height 7 does not fit"):
+    with pytest.raises(GradingError, match="edge a–b: boundary layer: the first height 7 does not fit") as caught:
         too_high.resolved_grading(0)
 
 

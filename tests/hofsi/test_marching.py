@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hoblock.layout import layout
 from hofsi.build import Problem, build
 from hofsi.errors import CaseError
 from hofsi.io.scene import read_case
@@ -130,6 +131,47 @@ component = "x"
     assert np.abs(record.state.mesh.mesh.points - problem.fluid.mesh.points).max() > 0.05
     assert error(record, lambda x, y: (1.3, -0.7)) < 1e-11
     assert abs(found["push"]) < 1e-11
+
+
+def test_a_boundary_layer_keeps_its_first_height_round_a_hole_that_moves_and_the_flow_stays_constant() -> None:
+    spokes = [("e", "a"), ("f", "b"), ("g", "c"), ("h", "d")]
+    problem, record, _ = last(f"""{HOLE}
+[[mesh.count]]
+on = [["e", "a"]]
+elements = 4
+[[mesh.grading]]
+on = {[list(pair) for pair in spokes]}
+kind = "boundary-layer"
+first_height = 0.03
+[fluid]
+density = 2.0
+viscosity = 0.01
+initial_velocity = [1.3, -0.7]
+[[fluid.boundary]]
+on = ["left", "top", "bottom", "hole"]
+type = "velocity"
+x = 1.3
+y = -0.7
+[[fluid.boundary]]
+on = "right"
+type = "do-nothing"
+[[motion]]
+on = "hole"
+x = "0.1*sin(9*t)"
+y = "0.05*sin(12*t) + 0.2*t"
+[time]
+dt = 0.02
+steps = 8
+""")
+    assert record.state.mesh is not None
+    assert problem.fluid is not None
+    assert error(record, lambda x, y: (1.3, -0.7)) < 1e-11
+    structure, points = record.state.mesh.structure, record.state.mesh.mesh.points
+    assert np.abs(points - problem.fluid.mesh.points).max() > 0.05
+    for wall, outside in spokes:
+        edge, forward = structure.topology.edge(*map(structure.topology.vertex, (wall, outside)))
+        nodes = layout(structure, 3).nodes_of_edge(edge)[:: 1 if forward else -1]
+        assert np.hypot(*(points[nodes[3]] - points[nodes[0]])) == pytest.approx(0.03, rel=1e-12)
 
 
 @pytest.mark.parametrize("mode", MODES)

@@ -34,11 +34,22 @@ def test_quality_in_json(kind, scene, file, capsys):
 def test_quality_in_words(scene, capsys):
     assert main(["quality", str(scene)]) == 0
     out = capsys.readouterr().out
+    assert out.startswith(f"scene            {scene}\n")
     assert "verdict          valid" in out
     for name in ("scaled Jacobian: min", "Jacobian ratio: min", "skewness: min", "aspect ratio: min", "size jump: min"):
         assert name in out
     assert out.count("█") > 40
     assert out.count(" in blocks.") == 5
+
+
+def test_histograms_have_no_empty_bins_at_their_ends(file, capsys):
+    assert main(["quality", str(file)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(f"mesh             {file}\n")
+    tables = [part.splitlines()[1:] for part in out.split("\n\n") if "█" in part]
+    assert len(tables) == 5
+    assert all(table[k].endswith("█") for table in tables for k in (0, -1))
+    assert [sum(int(line.split()[3]) for line in table) for table in tables] == [10] * 5
 
 
 def test_quality_of_a_bad_mesh_is_reported_in_full_with_exit_code_2(scene, bad_file, capsys):

@@ -23,6 +23,13 @@ def test_description_has_every_parameter(name, capsys):
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
+def test_each_parameter_has_its_own_meaning(name):
+    meanings = [parameter.meaning for parameter in TEMPLATES[name].parameters.values()]
+    assert sorted(meanings) == sorted(set(meanings))
+    assert all(meanings)
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
 def test_written_scene_is_accepted(name, tmp_path, capsys):
     path = tmp_path / f"{name}.toml"
     assert main(["templates", name, "-o", str(path)]) == 0

@@ -156,7 +156,7 @@ class BlockStructure(FrozenMappings):
         try:
             return grading.resolved(shape, int(self.topology.counts[edge]))
         except GradingError as error:
-            raise GradingError(f"edge {self.topology.edge_name(edge)}: {error}") from error
+            raise GradingError(f"edge {self.topology.edge_name(edge)}: {error}") from None
 
     def edge_points(self, edge: int, t: Array) -> Array:
         """Return the points of an edge at parameters ``t`` in [0, 1], shape (n, 2); straight without a curve."""

@@ -85,7 +85,7 @@ def as_text(source: Source, summary: QualitySummary) -> str:
     parts = [
         rows(
             {
-                "mesh": source.name,
+                "mesh" if source.scene is None else "scene": source.name,
                 "verdict": summary.verdict,
                 "det J": _validity(summary),
                 "elements": f"{summary.cells} of order {summary.order}",
@@ -109,13 +109,16 @@ def as_text(source: Source, summary: QualitySummary) -> str:
 
 
 def _bars(measure: MeasureSummary) -> list[str]:
+    """Lines of a histogram, from the first bin with elements to the last."""
     edges, counts = measure.histogram.edges, measure.histogram.counts
     most = max(max(counts), 1)
     ends = [f"{edge:g}" for edge in edges]
     width = max(map(len, ends))
+    filled = [k for k, count in enumerate(counts) if count]
+    shown = range(filled[0], filled[-1] + 1) if filled else range(0)
     return [
-        f"  {ends[k]:>{width}} to {ends[k + 1]:<{width}} {count:>8} {'█' * math.ceil(_BAR * count / most)}".rstrip()
-        for k, count in enumerate(counts)
+        f"  {ends[k]:>{width}} to {ends[k + 1]:<{width}} {counts[k]:>8} {'█' * math.ceil(_BAR * counts[k] / most)}".rstrip()
+        for k in shown
     ]
 
 

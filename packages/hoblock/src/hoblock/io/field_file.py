@@ -31,7 +31,8 @@ def read_field(path: str | Path, degree: int = 3) -> GridField | MeshField:
     path : str or Path
         ``.npz`` with the arrays ``x`` (m,), ``y`` (n,), ``values`` (m, n) of a grid, or with a mesh as `write_npz`
         writes it and ``values`` at its nodes; ``.csv`` or ``.txt`` with the columns x, y, value and a line for each
-        point of a grid, in any order, separated by commas, semicolons or blanks, headings and ``#`` comments skipped.
+        point of a grid, in any order, separated by commas, semicolons or blanks; one line of headings before them and
+        ``#`` comments are skipped.
     degree : int
         Of the spline through values on a grid.
 
@@ -111,6 +112,7 @@ def _table(path: Path) -> Array:
     except UnicodeDecodeError as error:
         raise FieldError(f"{path}: not a text file; expected the columns x, y, value.") from error
     rows: list[list[float]] = []
+    headed = False
     for number, line in enumerate(lines, start=1):
         text = line.split("#", 1)[0].strip()
         if not text:
@@ -119,8 +121,9 @@ def _table(path: Path) -> Array:
         try:
             x, y, value = (float(word) for word in words)
         except ValueError:
-            if not rows and not re.match(r"[-+.0-9]", text):
-                continue  # headings
+            if not rows and not headed and not re.match(r"[-+.0-9]", text):
+                headed = True
+                continue
             raise FieldError(f"{path}, line {number}: got {line.strip()!r}; expected x, y and a value.") from None
         rows.append([x, y, value])
     return np.array(rows, dtype=float).reshape(-1, 3)

@@ -40,8 +40,10 @@ def annulus(
 
     Parameters
     ----------
-    inner_radius, outer_radius : float
-        Radii of the circles.
+    inner_radius : float
+        Radius of the inner circle.
+    outer_radius : float
+        Radius of the outer circle.
     center : (float, float)
         Their centre.
     start : float

@@ -36,14 +36,22 @@ def backward_facing_step(
         Height of the step.
     inlet_height : float
         Height of the channel before it.
-    inlet_length, outlet_length : float
-        Lengths of the channel before and behind the step.
-    elements_inlet, elements_outlet : int
-        Elements along these lengths.
-    elements_upper, elements_lower : int
-        Elements across the inlet's height and across the step's.
-    stretch_inlet, stretch_outlet : float
-        Exponential gradings along the channel, dense at the step for positive values.
+    inlet_length : float
+        Length of the channel before the step.
+    outlet_length : float
+        Length of the channel behind the step.
+    elements_inlet : int
+        Elements along the channel before the step.
+    elements_outlet : int
+        Elements along the channel behind the step.
+    elements_upper : int
+        Elements across the inlet's height.
+    elements_lower : int
+        Elements across the step's height.
+    stretch_inlet : float
+        Exponential grading along the channel before the step, dense at the step for positive values.
+    stretch_outlet : float
+        Exponential grading along the channel behind the step, dense at the step for positive values.
 
     Raises
     ------

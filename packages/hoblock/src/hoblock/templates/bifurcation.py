@@ -75,20 +75,30 @@ def bifurcation(
     ----------
     width : float
         Of the vessel.
-    upper_width, lower_width : float
-        Of the branches.
-    upper_angle, lower_angle : float
-        By which the branches turn up and down; together from 20 to 170 degrees.
+    upper_width : float
+        Of the upper branch.
+    lower_width : float
+        Of the lower branch.
+    upper_angle : float
+        By which the upper branch turns up; together with the lower angle from 20 to 170 degrees.
+    lower_angle : float
+        By which the lower branch turns down; together with the upper angle from 20 to 170 degrees.
     inlet_length : float
         Of the straight vessel.
-    upper_length, lower_length : float
-        Of the straight branches.
+    upper_length : float
+        Of the straight upper branch.
+    lower_length : float
+        Of the straight lower branch.
     rounding : float
         Length of the outer walls' bends on the vessel's side, and at least on the branches'.
     elements_across : int
         Elements across each half of the vessel and of the branches.
-    elements_inlet, elements_bend, elements_branch : int
-        Elements along the straight vessel, along each half of the bends, along the straight branches.
+    elements_inlet : int
+        Elements along the straight vessel.
+    elements_bend : int
+        Elements along each half of the bends.
+    elements_branch : int
+        Elements along each straight branch.
     stretch : float
         Exponential grading across, dense at the walls for positive values.
 

@@ -37,16 +37,22 @@ def cavity_with_flexible_bottom(
 
     Parameters
     ----------
-    width, height : float
-        Sides of the cavity.
+    width : float
+        Of the cavity, from left to right.
+    height : float
+        Of the cavity, from bottom to top.
     thickness : float
         Of the flexible bottom.
     opening : float
         Height of inlet and outlet, both right under the lid; 0: none.
-    blocks_x, blocks_y : int
-        Blocks across the cavity, and upwards below the openings. Vertices between them move with the bottom.
-    elements_x, elements_y : int
-        Elements across each of these blocks.
+    blocks_x : int
+        Blocks across the cavity. Vertices between them move with the bottom.
+    blocks_y : int
+        Blocks upwards below the openings. Vertices between them move with the bottom.
+    elements_x : int
+        Elements across each of the blocks across the cavity.
+    elements_y : int
+        Elements across each of the blocks upwards.
     elements_opening : int
         Elements across an opening.
     elements_thickness : int

@@ -43,24 +43,32 @@ def cylinder_in_channel(
 
     Parameters
     ----------
-    length, height : float
+    length : float
         Of the channel; its lower left corner is at (0, 0).
+    height : float
+        Of the channel, from bottom to top.
     center : (float, float)
         Centre of the cylinder.
     radius : float
         Its radius.
     square : float
         Side of the square around it that the ring of blocks fills.
-    elements_inlet, elements_below, elements_above : int
-        Elements from the inlet, bottom and top to that square.
+    elements_inlet : int
+        Elements from the inlet to that square.
+    elements_below : int
+        Elements from the bottom to that square.
+    elements_above : int
+        Elements from that square to the top.
     elements_quarter : int
         Elements along each quarter of the cylinder, and each side of the square.
     elements_radial : int
         Elements from the cylinder to the square.
     elements_wake : int
         Elements from the square to the outlet.
-    stretch_radial, stretch_wake : float
-        Exponential gradings of the last two, dense at the cylinder for positive values.
+    stretch_radial : float
+        Exponential grading from the cylinder to the square, dense at the cylinder for positive values.
+    stretch_wake : float
+        Exponential grading from the square to the outlet, dense at the square for positive values.
 
     Raises
     ------

@@ -32,14 +32,22 @@ def l_shape(
 
     Parameters
     ----------
-    width, height : float
-        Sides of the whole rectangle.
-    notch_width, notch_height : float
-        Sides of the part that is missing.
-    elements_left, elements_right : int
-        Elements on both sides of the line x = 0.
-    elements_bottom, elements_top : int
-        Elements below and above the line y = 0.
+    width : float
+        Of the whole rectangle, from left to right.
+    height : float
+        Of the whole rectangle, from bottom to top.
+    notch_width : float
+        Of the part that is missing, from left to right.
+    notch_height : float
+        Of the part that is missing, from bottom to top.
+    elements_left : int
+        Elements to the left of the line x = 0.
+    elements_right : int
+        Elements to the right of the line x = 0.
+    elements_bottom : int
+        Elements below the line y = 0.
+    elements_top : int
+        Elements above the line y = 0.
     stretch : float
         Exponential grading away from the re-entrant corner, dense there for positive values.
 

@@ -48,13 +48,19 @@ def nozzle(
     ----------
     length : float
         From inlet to outlet.
-    inlet_height, throat_height, outlet_height : float
-        Distances between the walls.
+    inlet_height : float
+        Distance between the walls at the inlet.
+    throat_height : float
+        Distance between the walls at the throat.
+    outlet_height : float
+        Distance between the walls at the outlet.
     throat : float
         Place of the throat over the length.
-    upper, lower : curve or None
-        Walls from inlet to outlet, maps of [0, 1] to points; an upper wall takes the place of the lengths
-        above. Without a lower wall the upper one is mirrored at y = 0.
+    upper : curve or None
+        Upper wall from inlet to outlet, a map of [0, 1] to points; it takes the place of the lengths above.
+    lower : curve or None
+        Lower wall from inlet to outlet, a map of [0, 1] to points, together with an upper one. Without it the upper
+        wall is mirrored at y = 0, or the axis is the lower wall with half.
     half : bool
         Whether the axis y = 0 is the lower wall.
     blocks : int

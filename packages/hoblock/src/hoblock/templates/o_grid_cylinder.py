@@ -56,8 +56,12 @@ def o_grid_cylinder(
         Radius of the outermost ring.
     square : float
         Side of the square around the rings, more than their diameter.
-    upstream, downstream, half_height : float
-        Distances from the centre to the inflow, the outflow, and both top and bottom.
+    upstream : float
+        Distance from the centre to the inflow.
+    downstream : float
+        Distance from the centre to the outflow.
+    half_height : float
+        Distance from the centre to both top and bottom.
     first_height : float or None
         Height of the elements at the cylinder. Without one, ``elements_ring`` rings grow by ``growth``.
     growth : float
@@ -69,8 +73,12 @@ def o_grid_cylinder(
         Rings, if there is no first height.
     elements_square : int
         Elements from the rings to the square.
-    elements_upstream, elements_downstream, elements_side : int
-        Elements from the square to the inflow, the outflow, and to both top and bottom.
+    elements_upstream : int
+        Elements from the square to the inflow.
+    elements_downstream : int
+        Elements from the square to the outflow.
+    elements_side : int
+        Elements from the square to both top and bottom.
     stretch : float
         Exponential grading of all these outside the rings, dense at the cylinder for positive values.
 

@@ -36,17 +36,26 @@ def rectangle(
 
     Parameters
     ----------
-    width, height : float
-        Lengths of the sides.
+    width : float
+        Length of the lower and the upper side.
+    height : float
+        Length of the left and the right side.
     corner : (float, float)
         The lower left corner.
-    blocks_x, blocks_y : int
-        Blocks along each side.
-    elements_x, elements_y : int
-        Elements across each block.
-    stretch_x, stretch_y : float
-        Exponential grading over the whole side, dense at the left or bottom for positive values, at the
-        other end for negative ones; the elements do not depend on how many blocks share them.
+    blocks_x : int
+        Blocks from left to right.
+    blocks_y : int
+        Blocks from bottom to top.
+    elements_x : int
+        Elements across each block from left to right.
+    elements_y : int
+        Elements across each block from bottom to top.
+    stretch_x : float
+        Exponential grading over the whole width, dense at the left for positive values, at the right for
+        negative ones; the elements do not depend on how many blocks share them.
+    stretch_y : float
+        Exponential grading over the whole height, dense at the bottom for positive values, at the top for
+        negative ones; the elements do not depend on how many blocks share them.
 
     Raises
     ------
