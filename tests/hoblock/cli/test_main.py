@@ -95,3 +95,13 @@ def test_bad_use_of_mesh_files_is_one_message(arguments, message, file, capsys, 
     assert out == ""
     assert err.startswith("hoblock: " + message.format(file=file))
     assert err.count("\n") == 1
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    command = [sys.executable, "-m", "hoblock", "templates", "naca_c_grid"]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    assert process.wait() == 0
+    process.stderr.close()
