@@ -1,3 +1,5 @@
+import traceback
+
 import numpy as np
 import pytest
 
@@ -167,6 +169,12 @@ def test_a_curve_that_misses_its_vertex():
         build(curves={("b", "a"): arc})
     with pytest.raises(CurveError, match="away from vertex 'a'"):
         build(curves={("a", "b"): NodalCurve(np.array([(0, 0.1), (1, 0)]), 1)})
+
+
+def test_a_curve_with_its_coordinates_in_rows_is_told_so():
+    match = r"end point \(0, 1\) is 1 away from .* The curve seems to return a row of x and a row of y: return"
+    with pytest.raises(CurveError, match=match):
+        build(curves={("a", "b"): lambda t: np.stack([t, 0.1 * np.sin(np.pi * t)])})
 
 
 def test_unknown_names_suggest_close_ones():
@@ -342,6 +350,7 @@ def test_edges_tell_their_points_and_gradings(layouts):
     too_high = structure.with_gradings({("a", "b"): BoundaryLayer(7.0)})
     with pytest.raises(GradingError, match="edge a–b: boundary layer: the first height 7 does not fit") as caught:
         too_high.resolved_grading(0)
+    assert "".join(traceback.format_exception(caught.value)).count("the first height 7") == 1
 
 
 def test_a_block_whose_chords_have_no_area_may_be_curved():

@@ -20,17 +20,43 @@ from hoblock.cli import main
         (["check", "{scene}", "--set", 'mesh.curve[0].y="0.1 + h*s"'], "{scene}: mesh.curve[0] on a–b: curve: end"),
         (["check", "{scene}", "--set", 'mesh.curve[0].y="log(s)"'], "{scene}: mesh.curve[0].y: expression"),
         (["check", "missing.toml"], "missing.toml: no such file"),
+        (
+            ["check", "m.msh"],
+            "check: m.msh is a mesh file; expected a scene (.toml). For a mesh file use: hoblock quality",
+        ),
+        (["mesh", "m.npz", "-o", "a.vtu"], "mesh: m.npz is a mesh file; expected a scene (.toml)."),
+        (
+            ["convert", "{scene}", "a.vtu"],
+            "convert: {scene} is a scene; expected a mesh file. For a scene use: hoblock mesh {scene} -o a.vtu.",
+        ),
+        (["mesh", "{scene}", "-o", "folder.vtu"], "folder.vtu: Is a directory. Give the name of a file."),
+        (["quality", "folder.vtu"], "folder.vtu: Is a directory. Give the name of a file."),
         (["mesh", "{scene}", "-o", "mesh.stl"], "mesh.stl: suffix is '.stl'; expected one of"),
-        (["mesh", "{scene}", "-o", "no/such/folder.npz"], "no/such/folder.npz: No such file or directory"),
+        (
+            ["mesh", "{scene}", "-o", "no/such/folder.npz"],
+            "no/such/folder.npz: No such file or directory. There is no folder no/such: make it first.",
+        ),
     ],
 )
 def test_errors_are_one_message_and_exit_code_2(arguments, message, scene, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.vtu").mkdir()
     assert main([word.format(scene=scene) for word in arguments]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("hoblock: " + message.format(scene=scene))
     assert err.count("\n") == 1
+
+
+def test_files_that_may_not_be_written_have_a_way_out(scene, capsys, monkeypatch):
+    def refuse(part, path):
+        raise PermissionError(13, "Permission denied", str(part))
+
+    monkeypatch.setattr(os, "replace", refuse)
+    target = scene.with_name("a.vtu")
+    remedy = "Check the rights of the file and its folder, or choose another folder."
+    assert main(["mesh", str(scene), "-o", str(target)]) == 2
+    assert capsys.readouterr().err == f"hoblock: {target}: Permission denied. {remedy}\n"
 
 
 def test_usage_errors_exit_with_2(capsys):
@@ -81,7 +107,8 @@ def test_help_texts(command, capsys):
         (["plot", "{file}", "-o", "a.png", "--width", "0"], "plot: --width is 0; expected 1 to 100 inches"),
         (["plot", "{file}", "-o", "a.png", "--dpi", "1"], "plot: --dpi is 1; expected 10 to 2000"),
         (["quality", "{file}", "--worst", "-1"], "quality: --worst is -1; expected 0 or more"),
-        (["quality", "nothing.npz"], "nothing.npz: No such file or directory"),
+        (["quality", "no/folder.npz"], "no/folder.npz: No such file or directory. Check the name and the folder."),
+        (["quality", "nothing.npz"], "nothing.npz: No such file or directory. Check the name and the folder."),
         (["quality", "mesh.stl"], "mesh.stl: suffix is '.stl'; expected one of"),
         (["convert", "{file}", "a.npz", "--order", "0"], "convert: --order is 0; expected 1 to 32"),
         (["convert", "{file}", "a.stl"], "a.stl: suffix is '.stl'; expected one of"),

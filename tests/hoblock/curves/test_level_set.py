@@ -231,6 +231,10 @@ def sine(points):
             lambda: LevelSet(circle, (1, 0), (0, 1.01)),
             r"second vertex \(0, 1\.01\) is 0\.00995 away .*\(nearest point: \(.*, 1\)\); .*project = true",
         ),
+        (
+            lambda: LevelSet(lambda p: np.sum(p * p, axis=1) + 7.0, (0, 0), (2, 0)),
+            r"first vertex \(0, 0\) is not on the isoline, and the function's gradient vanishes there; expected a",
+        ),
         (lambda: LevelSet(lambda p: 0.0 * circle(p), (1, 0), (0, 1)), "gradient vanishes at the first vertex"),
         (lambda: LevelSet(circle, (1, 0), (-1, 0)), "along the chord's normal at the first vertex .* Split the edge"),
         (lambda: LevelSet(two_circles, (-1, 0.5), (1, 0.5)), r"runs along the chord's normal at t = 0\.25, \(-0\.5, "),

@@ -49,7 +49,12 @@ def test_points_on_the_isoline_stay():
 @pytest.mark.parametrize(
     ("function", "points", "options", "match"),
     [
-        (circle, [(0.5, 0.0)], {"reach": 0.4}, r"within 0\.4 of it from \(0\.5, 0\); .* Start closer to the isoline, take a larger reach or check"),
+        (
+            circle,
+            [(0.5, 0.0)],
+            {"reach": 0.4},
+            r"within 0\.4 of it from \(0\.5, 0\); .* Start closer to the isoline, take a larger reach or check",
+        ),
         (circle, [(0.0, 0.0)], {}, r"none found from \(0, 0\); .* Start closer to the isoline or check the level"),
         (lambda p: circle(p) + 5.0, [(1.0, 1.0)], {"reach": 5.0}, "none found within 5"),
         (circle, [(np.nan, 0.0)], {}, r"points have shape \(1, 2\); expected finite coordinates \(n, 2\)"),

@@ -191,6 +191,9 @@ def test_a_single_element_of_the_edges_length(straight):
 @pytest.mark.parametrize(
     ("make", "match"),
     [
+        (lambda: BoundaryLayer("1e-3"), "boundary layer: first_height is '1e-3'; expected a number"),
+        (lambda: BoundaryLayer(None), "boundary layer: first_height is None; expected a number"),
+        (lambda: BoundaryLayer(0.1, growth="1.2"), r"boundary layer: growth is '1\.2'; expected a number"),
         (lambda: BoundaryLayer(0.0), "boundary layer: first height is 0; expected a positive length"),
         (lambda: BoundaryLayer(float("nan")), "boundary layer: first height is nan"),
         (

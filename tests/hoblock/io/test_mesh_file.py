@@ -163,3 +163,16 @@ def test_elements_listed_clockwise_are_turned_but_inverted_ones_stay_invalid(suf
     assert certify(back).counts == expected
     assert element_areas(back).sum() == pytest.approx(1.0, rel=1e-12)
     assert element_areas(back).min() == pytest.approx(element_areas(folded).min(), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "way_out"),
+    [
+        ("a.stl", r"For a file of another name say the format \(format=…, --format on the command line\)"),
+        ("a.pvd", r"A \.pvd file lists the \.vtu files of a series: take one of these"),
+        ("a.vtkhdf", r"hoblock\.io\.vtkhdf\.VtkhdfSeries writes these series; they cannot be read back"),
+    ],
+)
+def test_a_suffix_that_is_no_mesh_files_has_a_way_out(name, way_out, tmp_path):
+    with pytest.raises(MeshFileError, match=way_out):
+        read_mesh(tmp_path / name)

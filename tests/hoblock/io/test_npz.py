@@ -54,6 +54,11 @@ def test_files_of_another_kind(path):
         np.save(file, np.zeros(3))
     with pytest.raises(MeshFileError, match="not a NumPy archive that can be read"):
         read_npz(path)
+    path.write_bytes(b"P")
+    with pytest.raises(
+        MeshFileError, match=r"not a NumPy archive that can be read \(File is not a zip file\)\. Write it"
+    ):
+        read_npz(path)
     path.write_bytes(b"")
     with pytest.raises(MeshFileError, match="not a NumPy archive that can be read"):
         read_npz(path)

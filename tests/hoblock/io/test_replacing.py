@@ -1,3 +1,5 @@
+import os
+
 import pytest
 
 from hoblock.io.replacing import replacing
@@ -35,3 +37,19 @@ def test_missing_folders_are_named_with_the_file(tmp_path):
     with pytest.raises(FileNotFoundError, match="No such file or directory") as info, replacing(path):
         pass
     assert info.value.filename == str(path)
+
+
+def test_errors_name_the_file_itself(tmp_path, monkeypatch):
+    (tmp_path / "folder.vtu").mkdir()
+    with pytest.raises(IsADirectoryError) as info, replacing(tmp_path / "folder.vtu"):
+        pass
+    assert info.value.filename == str(tmp_path / "folder.vtu")
+
+    def refuse(part, path):
+        raise PermissionError(13, "Permission denied", str(part))
+
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(PermissionError, match="Permission denied") as info, replacing(tmp_path / "a.txt"):
+        pass
+    assert info.value.filename == str(tmp_path / "a.txt")
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.vtu"]

@@ -188,7 +188,7 @@ def test_constants_use_those_above():
     ("constants", "message"),
     [
         ({"a": "2*b", "b": 1}, r"^constants\.a: '2\*b' uses 'b', which is not known yet; move it below"),
-        ({"a": "a + 1"}, r"^constants\.a: 'a \+ 1' uses 'a', which is not known yet"),
+        ({"a": "a + 1"}, r"^constants\.a: 'a \+ 1' uses the constant itself; expected a number or constants above"),
         ({"a": "2*zz"}, r"^constants\.a: expression \"2\*zz\": the name 'zz' is not known"),
         ({"a": "x"}, "the name 'x' has no meaning here"),
         ({"a": True}, r"^constants\.a: got the boolean true; expected a number or an expression of earlier constants"),
@@ -304,6 +304,23 @@ def test_missing_keys(line, message):
 def test_a_misspelt_mesh_table_is_found():
     with pytest.raises(SceneError, match=r"mesh: the required key is missing\. Is it misspelt as 'mehs'\?"):
         scene(text=SCENE.replace("[mesh", "[mehs"))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('title = "x"\n', r"^ring\.toml: mesh: the required key is missing\. Add a table \[mesh\]$"),
+        ("[mesh]\norder = 2\n", r"mesh: there are no blocks; expected \[mesh\.vertices\] and \[mesh\.blocks\], or"),
+        (
+            "[mesh.vertixes]\na = [0, 0]\n",
+            r"mesh\.vertices: the required key is missing\. Is it misspelt as 'vertixes'",
+        ),
+        ("[mesh.vertices]\na = [0, 0]\n", r"mesh\.blocks: the required key is missing\. Add a table \[mesh\.blocks\]"),
+    ],
+)
+def test_scenes_without_blocks(text, message):
+    with pytest.raises(SceneError, match=message):
+        scene(text=text)
 
 
 def test_a_name_without_any_named_edges():

@@ -90,6 +90,12 @@ def test_distribution_by_arc_length(kind, tmp_path):
     [
         ({"kind": "nurb"}, r"kind: got 'nurb'\. Did you mean 'nurbs'\? Expected one of 'arc', 'b-spline', 'bezier'"),
         ({"kind": "arc", "center": [0, 0], "angle": 1}, "an arc with 'center' and 'angle'; expected exactly one of"),
+        ({"kind": "arc", "throgh": [0, 0]}, r"exactly one of 'center', .*\. Is it misspelt as 'throgh'\?$"),
+        ({"kind": "arc", "distribution": "arc-length"}, r"an arc with none of .* one of 'center', 'through', 'angle'$"),
+        (
+            {"kind": "nurbs", "piont": LISTED, "degree": 2},
+            r"neither .*exactly one of them\. Is it misspelt as 'piont'\?$",
+        ),
         ({"kind": "ellipse", "center": [0, 0]}, r"radii: the required key is missing"),
         ({"kind": "ellipse", "center": [0, 0], "radii": 2}, r"radii: got the number 2"),
         (

@@ -2,13 +2,14 @@ import numpy as np
 import pytest
 
 from hoblock.blocks import BlockStructure
-from hoblock.curves import Arc, NodalCurve
+from hoblock.curves import Arc, NodalCurve, Polyline
 from hoblock.errors import TopologyError
 from hoblock.generate import generate
-from hoblock.grading import BoundaryLayer, Cubic, Exponential, Listed, Quadratic, Uniform
+from hoblock.grading import BoundaryLayer, Cubic, Exponential, Listed, Pieces, Quadratic, Uniform, reverse
 from hoblock.layout import layout
 from hoblock.operations.chain import chains
 from hoblock.operations.splitting import split
+from hoblock.quality import quality_summary
 
 # A strip that leaves block (a, b, c, d) at its right side and comes back to its top: one chain crosses the block twice.
 PIGTAIL = {
@@ -161,12 +162,39 @@ def test_parts_of_smooth_gradings_take_other_counts(layouts):
     assert len(generate(found.with_counts({("a", "d"): 9}), 2).cells) == 4 * 9
 
 
+@pytest.mark.parametrize("grading", [Pieces(), reverse(Pieces())])
+@pytest.mark.parametrize(("at", "counts"), [(0.4, None), (0.73, (5, 3)), (0.2, (2, 4))])
+def test_kinks_stay_between_elements_when_cut_at_a_place(grading, at, counts):
+    roof = np.array([(0.0, 1.0), (0.3, 1.1), (1.2, 0.9), (2.0, 1.0)])
+    strip = BlockStructure.build(
+        {"a": (0, 0), "b": (2, 0), "c": (2, 1), "d": (0, 1)},
+        [("a", "b", "c", "d")],
+        counts={("a", "b"): 8, ("a", "d"): 2},
+        curves={("d", "c"): Polyline(roof)},
+        gradings={("d", "c"): grading},
+    )
+    area = np.trapezoid(roof[:, 1], roof[:, 0])
+    found = generate(split(strip, ("d", "c"), at=at, counts=counts), 3)
+    assert quality_summary(found).area == pytest.approx(area, rel=1e-13)
+
+
+def test_parts_with_fewer_elements_than_pieces_take_corners(layouts):
+    zigzag = Polyline([(0.0, 1.0), (0.2, 1.1), (0.4, 1.0), (0.6, 1.1), (1.0, 1.0)])
+    square = layouts.square(counts=4).with_curves({("d", "c"): zigzag}).with_gradings({("d", "c"): Pieces()})
+    assert len(generate(split(square, ("d", "c"), at=0.8, counts=(1, 3)), 2).cells) == 16
+
+
+def test_an_edge_of_one_element_cannot_be_cut_between_elements(layouts):
+    with pytest.raises(TopologyError, match="after=1, the edge has 1 element; expected at least 2 to cut between"):
+        split(layouts.square(counts=1), ("a", "b"), after=1)
+
+
 @pytest.mark.parametrize(
     ("edge", "options", "match"),
     [
         (("a", "b"), {}, r"split a–b: give either after=… \(elements\) or at=… \(parameter\), one of them"),
         (("a", "b"), {"after": 1, "at": 0.5}, "give either after"),
-        (("a", "b"), {"after": 3}, "after=3, the edge has 3 elements; expected a whole number between 1 and one less"),
+        (("a", "b"), {"after": 3}, "after=3, the edge has 3 elements; expected a whole number from 1 to 2. Give the"),
         (("a", "b"), {"after": 0}, "after=0"),
         (("a", "b"), {"after": 1.5}, "after=1.5"),
         (("a", "b"), {"after": 1, "counts": (1, 2)}, "counts go with at=…; after=1 keeps the elements"),

@@ -332,7 +332,9 @@ def test_unknown_template_and_parameter():
         find_template("annulus").build({"radius_inner": 1.0})
     with pytest.raises(TemplateError, match="Did you mean 'inner_radius'"):
         find_template("annulus").build({"inner_radios": 1.0})
-    with pytest.raises(TypeError, match="unexpected keyword argument 'radios'"):
+    with pytest.raises(
+        TypeError, match=r"disc\(\) got an unexpected keyword argument 'radios'\. Did you mean 'radius'"
+    ):
         disc(radios=1.0)
 
 

@@ -232,12 +232,15 @@ def check_ends(ends: Array, corners: Array, names: Sequence[str], allowed: float
     """The ends (2, 2) of a curve must be within ``allowed`` of its first and second vertex (2, 2)."""
     if np.shape(ends) != (2, 2):
         raise CurveError(f"{place}: returned shape {np.shape(ends)} for 2 parameters; expected (2, 2), a point a row.")
+    remedy = "Check the curve's direction."
+    if (np.abs(np.transpose(ends) - corners) <= allowed).all():
+        remedy = "The curve seems to return a row of x and a row of y: return np.stack([x, y], axis=-1), a point a row."
     for end, corner, name in zip(ends, corners, names, strict=True):
         gap = float(np.hypot(*(end - corner)))
         if not gap <= allowed:
             raise CurveError(
                 f"{place}: end point ({end[0]:g}, {end[1]:g}) is {gap:.2g} away from vertex '{name}' at "
-                f"({corner[0]:g}, {corner[1]:g}); must coincide within {allowed:.1g}. Check the curve's direction."
+                f"({corner[0]:g}, {corner[1]:g}); must coincide within {allowed:.1g}. {remedy}"
             )
 
 

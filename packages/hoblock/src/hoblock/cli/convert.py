@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from hoblock.cli.command import Command, UsageError
 from hoblock.cli.formats import add_format, write
@@ -31,6 +32,11 @@ def _run(arguments: argparse.Namespace) -> None:
     order = arguments.order
     if order is not None and not 1 <= order <= HIGHEST_ORDER:
         raise UsageError(f"--order is {order}; expected 1 to {HIGHEST_ORDER}.")
+    if Path(arguments.source).suffix.lower() == ".toml":
+        raise UsageError(
+            f"{arguments.source} is a scene; expected a mesh file. For a scene use: "
+            f"hoblock mesh {arguments.source} -o {arguments.output}."
+        )
     mesh = read_mesh(arguments.source)
     result = mesh if order is None else resample(mesh, order)
     if not arguments.unchecked:

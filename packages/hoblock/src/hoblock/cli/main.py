@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from hoblock.cli import check, convert, mesh, plot, quality, templates
 from hoblock.cli.command import UsageError
@@ -46,8 +47,23 @@ def main(argv: Sequence[str] | None = None) -> int:
         named = any(name and str(error).startswith(name) for name in (source, output))
         return _fail(str(error) if named or not source else f"{source}: {error}")
     except OSError as error:
-        return _fail(f"{error.filename or source}: {error.strerror or error}")
+        return _fail(_system_message(error, str(error.filename or source), output))
     return 0
+
+
+def _system_message(error: OSError, name: str, output: str | None) -> str:
+    """What the system says about a file, and the way out."""
+    folder = Path(name).parent
+    remedy = ""
+    if isinstance(error, FileNotFoundError | NotADirectoryError):
+        remedy = "Check the name and the folder."
+        if name == output and not folder.is_dir():
+            remedy = f"There is no folder {folder}: make it first."
+    elif isinstance(error, IsADirectoryError):
+        remedy = "Give the name of a file."
+    elif isinstance(error, PermissionError):
+        remedy = "Check the rights of the file and its folder, or choose another folder."
+    return f"{name}: {error.strerror or error}. {remedy}".rstrip()
 
 
 def _fail(message: str) -> int:

@@ -112,14 +112,12 @@ def _bars(measure: MeasureSummary) -> list[str]:
     """Lines of a histogram, from the first bin with elements to the last."""
     edges, counts = measure.histogram.edges, measure.histogram.counts
     most = max(max(counts), 1)
+    bars = ["█" * math.ceil(_BAR * count / most) for count in counts]
     ends = [f"{edge:g}" for edge in edges]
     width = max(map(len, ends))
     filled = [k for k, count in enumerate(counts) if count]
     shown = range(filled[0], filled[-1] + 1) if filled else range(0)
-    return [
-        f"  {ends[k]:>{width}} to {ends[k + 1]:<{width}} {counts[k]:>8} {'█' * math.ceil(_BAR * counts[k] / most)}".rstrip()
-        for k in shown
-    ]
+    return [f"  {ends[k]:>{width}} to {ends[k + 1]:<{width}} {counts[k]:>8} {bars[k]}".rstrip() for k in shown]
 
 
 def as_json(source: Source, summary: QualitySummary) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from hoblock.build import build_structure
 from hoblock.cli.command import UsageError
 from hoblock.errors import InvalidMeshError
 from hoblock.generate import generate, raise_if_invalid
-from hoblock.io.mesh_file import read_mesh
+from hoblock.io.mesh_file import FORMATS, read_mesh
 from hoblock.io.scene import load_mesh_scene
 from hoblock.mesh import QuadMesh
 from hoblock.quality import invalid_elements
@@ -130,7 +130,15 @@ def load_scene(arguments: argparse.Namespace) -> Source:
     ------
     HoblockError
         If the scene is bad.
+    UsageError
+        If it is a mesh file.
     """
+    suffix = Path(arguments.source).suffix.lower()
+    if suffix in {form.suffix for form in FORMATS.values() if form.suffix}:
+        raise UsageError(
+            f"{arguments.source} is a mesh file; expected a scene (.toml). For a mesh file use: "
+            f"hoblock quality {arguments.source}, or hoblock convert {arguments.source} OUT."
+        )
     order = [] if arguments.order is None else [f"mesh.order={arguments.order}"]
     scene = load_mesh_scene(arguments.source, [*arguments.overrides, *order])
     structure = build_structure(scene)

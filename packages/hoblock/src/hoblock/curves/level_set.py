@@ -129,6 +129,12 @@ def _check_ends(strip: Strip) -> None:
     distance = strip.length * ratio(np.abs(value), np.hypot(along, across))
     for which, point, d, a, b in zip(("first", "second"), strip.points(t, s), distance, along, across, strict=True):
         where = f"({point[0]:.6g}, {point[1]:.6g})"
+        if np.isinf(d):
+            raise CurveError(
+                f"{strip.name}: the {which} vertex {where} is not on the isoline, and the function's gradient vanishes "
+                f"there{_nearest(strip, point)}; expected a vertex within {_allowed(strip):.2g} of the isoline. Move "
+                "the vertex, and check the function and its level."
+            )
         if not d <= _allowed(strip):
             raise CurveError(
                 f"{strip.name}: the {which} vertex {where} is {d:.3g} away from the isoline{_nearest(strip, point)}; "

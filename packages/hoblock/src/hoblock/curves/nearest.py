@@ -131,8 +131,8 @@ class _Projection:
     def _fail(self, point: Array, value: float) -> NoReturn:
         unlimited = np.isinf(self.reach)
         within = "" if unlimited else f" within {self.reach:.6g} of it"
-        start_closer = "Start closer to the isoline" if unlimited else "Start closer to the isoline, take a larger reach"
+        larger = "" if unlimited else ", take a larger reach"
         raise CurveError(
             f"nearest point on a level set: none found{within} from ({point[0]:.6g}, {point[1]:.6g}); the function "
-            f"less its level was {value:.3g} at last. {start_closer} or check the level."
+            f"less its level was {value:.3g} at last. Start closer to the isoline{larger} or check the level."
         )

@@ -57,6 +57,10 @@ class BoundaryLayer:
 
     def __post_init__(self) -> None:
         check_ends(self.ends, "boundary layer")
+        for name in ("first_height", "growth", "thickness"):
+            value = getattr(self, name)
+            if not isinstance(value, int | float | np.number) and (value is not None or name == "first_height"):
+                raise GradingError(f"boundary layer: {name} is {value!r}; expected a number.")
         if not 0.0 < self.first_height < math.inf:
             raise GradingError(f"boundary layer: first height is {self.first_height:g}; expected a positive length.")
         if self.thickness is not None:

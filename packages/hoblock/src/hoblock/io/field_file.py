@@ -56,7 +56,7 @@ def read_field(path: str | Path, degree: int = 3) -> GridField | MeshField:
     if suffix != ".npz":
         return _gridded(path, _table(path), degree)
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with zipfile.ZipFile(path), np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files if name in ("x", "y", _VALUES, "cells")}
     except (ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise FieldError(f"{path}: not a NumPy archive that can be read ({error}). Write it anew.") from error

@@ -115,6 +115,12 @@ def _names(*, readable: bool) -> list[str]:
     return [name for name, form in FORMATS.items() if form.read is not None or not readable]
 
 
+_SERIES = {
+    ".pvd": "A .pvd file lists the .vtu files of a series: take one of these; hoblock.io.pvd.PvdSeries writes series.",
+    ".vtkhdf": "hoblock.io.vtkhdf.VtkhdfSeries writes these series; they cannot be read back.",
+}
+
+
 def _format(path: str | Path, name: str | None, *, readable: bool) -> Format:
     if name is not None:
         if name not in FORMATS:
@@ -128,6 +134,6 @@ def _format(path: str | Path, name: str | None, *, readable: bool) -> Format:
     if suffix not in suffixes:
         raise MeshFileError(
             f"{path}: suffix is {suffix!r}; expected one of {', '.join(sorted(map(str, suffixes)))}. "
-            "A file of another name needs its format said."
+            + _SERIES.get(suffix, "For a file of another name say the format (format=…, --format on the command line).")
         )
     return suffixes[suffix]

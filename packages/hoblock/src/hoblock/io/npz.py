@@ -63,7 +63,7 @@ def read_npz(path: str | Path) -> QuadMesh:
         If the file cannot be opened.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with zipfile.ZipFile(path), np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
     except (ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise MeshFileError(f"{path}: not a NumPy archive that can be read ({error}). Write it anew.") from error

@@ -36,10 +36,16 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     path = Path(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     part = path.with_name(path.name + ".part")
     try:
         with part.open("wb") as file:
             yield file
         os.replace(part, path)
+    except OSError as error:
+        if str(error.filename) == str(part):
+            error.filename = str(path)  # the name that the caller knows
+        raise
     finally:
         part.unlink(missing_ok=True)

@@ -21,6 +21,7 @@ from hoblock.io.table import Table
 from hoblock.io.toml import apply_overrides, naming_file, read_toml
 from hoblock.io.values import describe
 from hoblock.scene import HIGHEST_ORDER, CountScene, MeshScene, Path, Quad, TemplateScene
+from hoblock.spelling import suggestion
 
 __all__ = ["constants_of", "load_mesh_scene", "read_mesh_scene"]
 
@@ -82,6 +83,7 @@ def read_mesh_scene(data: Mapping[str, Any], file: str) -> MeshScene:
         if quads is not None:
             vertices, blocks, edges = names_of(build_quads(quads))
         elif template is None:
+            _check_blocks_given(mesh)
             vertices = _vertices(mesh.table("vertices"), constants)
             blocks = _blocks(mesh.table("blocks"), vertices)
             edges = {}
@@ -141,6 +143,8 @@ def constants_of(data: Mapping[str, Any]) -> dict[str, float]:
             if not later:
                 raise
             problem = f"{value!r} uses {later[0]!r}, which is not known yet; move it below that constant"
+            if later[0] == name:
+                problem = f"{value!r} uses the constant itself; expected a number or constants above it"
             raise SceneError(problem, place) from error
     return constants
 
@@ -164,6 +168,18 @@ def _template(mesh: Table, constants: Mapping[str, float]) -> TemplateScene:
                 mesh.place_of(key),
             )
     return read_template(mesh.table("template"), constants)
+
+
+def _check_blocks_given(mesh: Table) -> None:
+    """An error that lists the ways to give blocks, if there are none and nothing looks like a misspelt one of them."""
+    ways = ("vertices", "blocks", "template", "structure")
+    if any(mesh.has(key) or suggestion(key, mesh) for key in ways):
+        return
+    raise SceneError(
+        "there are no blocks; expected [mesh.vertices] and [mesh.blocks], or [mesh.template], or structure, the name "
+        "of a file with a coarse quad mesh",
+        mesh.place,
+    )
 
 
 def _vertices(table: Table, constants: Mapping[str, float]) -> dict[str, tuple[float, float]]:

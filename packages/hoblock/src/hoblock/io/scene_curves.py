@@ -81,7 +81,8 @@ class _Keys:
         listed, filed = self.table.has("points"), self.table.has("file")
         if listed == filed:
             got = "both 'points' and 'file'" if listed else "neither 'points' nor 'file'"
-            raise SceneError(f"a curve with {got}; expected exactly one of them", self.table.place)
+            misspelt = "" if listed else self.table.misspelt("points", "file")
+            raise SceneError(f"a curve with {got}; expected exactly one of them{misspelt}", self.table.place)
         if filed:
             return read_points(self.folder / self.table.string("file"), self.table.place_of("file"))
         return tuple(pair_of(*item, self.constants) for item in self.items("points", "points [x, y]"))
@@ -91,7 +92,10 @@ def _arc(keys: _Keys) -> Shape:
     given = [key for key in ("center", "through", "angle") if keys.table.has(key)]
     if len(given) != 1:
         got = " and ".join(map(repr, given)) or "none of 'center', 'through' and 'angle'"
-        raise SceneError(f"an arc with {got}; expected exactly one of 'center', 'through', 'angle'", keys.table.place)
+        misspelt = keys.table.misspelt("center", "through", "angle") if not given else ""
+        raise SceneError(
+            f"an arc with {got}; expected exactly one of 'center', 'through', 'angle'{misspelt}", keys.table.place
+        )
     if given == ["angle"]:
         return ArcOfAngle(keys.number("angle"))
     return ArcAbout(keys.pair("center")) if given == ["center"] else ArcThrough(keys.pair("through"))

@@ -63,8 +63,9 @@ class _Keys:
         if len(present) == 1:
             return present[0]
         names = " and ".join(f"'{key}'" for key in present) if present else f"none of {', '.join(map(repr, keys))}"
+        misspelt = "" if present else self.table.misspelt(*keys)
         raise SceneError(
-            f"a grading with {names}; expected exactly one of {', '.join(map(repr, keys))}", self.table.place
+            f"a grading with {names}; expected exactly one of {', '.join(map(repr, keys))}{misspelt}", self.table.place
         )
 
     def _number(self, value: object, place: str, limits: Limits) -> float:

@@ -157,7 +157,10 @@ class Table:
                 raise SceneError(f"got {describe(value)}; expected a table [{place}]", place)
             return Table(value, place)
 
-        return self._read(key, REQUIRED if required else Table({}, self.place_of(key)), read)
+        place = self.place_of(key)
+        if required and key not in self._data and not self.misspelt(key):
+            raise SceneError(f"the required key is missing. Add a table [{place}]", place)
+        return self._read(key, REQUIRED if required else Table({}, place), read)
 
     def tables(self, key: str, *, required: bool = False) -> tuple[Table, ...]:
         """Read an array of tables. If it is not required and missing, it is empty."""
@@ -182,6 +185,12 @@ class Table:
         """Read a required value as the parser gave it."""
         return self._read(key, REQUIRED, lambda value, place: value)
 
+    def misspelt(self, *keys: str) -> str:
+        """Return ``". Is it misspelt as 'denisty'?"`` if a key nobody asked for so far is close to one of these."""
+        others = [name for name in self._data if name not in self._known]
+        found = next(filter(None, (suggestion(key, others) for key in keys)), "")
+        return f". {found.replace('Did you mean', 'Is it misspelt as').rstrip()}" if found else ""
+
     def finish(self) -> None:
         """Check that no keys are left.
 
@@ -203,8 +212,4 @@ class Table:
             return read(self._data[key], self.place_of(key))
         if not isinstance(default, Required):
             return default
-        others = suggestion(key, [name for name in self._data if name not in self._known])
-        raise SceneError(
-            f"the required key is missing. {others.replace('Did you mean', 'Is it misspelt as')}".rstrip(),
-            self.place_of(key),
-        )
+        raise SceneError(f"the required key is missing{self.misspelt(key) or '.'}", self.place_of(key))

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Curve, NodalCurve, piece, with_ends
+from hoblock.curves.curve import breaks_of
 from hoblock.edge_tables import Ends
 from hoblock.errors import TopologyError
+from hoblock.grading import Pieces, reverse
 from hoblock.operations.grading_cuts import AfterElements, AtParameter, Cut, GradingCut
 from hoblock.operations.isolines import isoline_curve, isoline_grading, resolved_isoline_grading
 from hoblock.operations.structure_tables import Quad, StructureTables
@@ -40,7 +42,8 @@ def split(
         Cut after that many elements. The mesh remains as it is, element for element, where the gradings of opposite
         edges are equal; gradings that depend on their edge are, on the edges cut, replaced by what they give now.
     at : float, optional
-        Cut at that parameter, in (0, 1), of every edge in the chain, its curve's parameter t.
+        Cut at that parameter, in (0, 1), of every edge in the chain, its curve's parameter t. ``Pieces()`` is kept on
+        parts with at least as many elements as pieces.
     counts : (int, int), optional
         With ``at``: elements of the two parts. Otherwise the present number is shared out as the grading of ``edge``
         places them.
@@ -74,9 +77,10 @@ def _cut(after: int | None, at: float | None, counts: tuple[int, int] | None, co
         if counts is not None:
             raise TopologyError(f"{place}: counts go with at=…; after={after} keeps the elements as they are.")
         if isinstance(after, bool) or not isinstance(after, int | np.integer) or not 0 < after < count:
+            expected = f"a whole number from 1 to {count - 1}" if count > 1 else "at least 2 to cut between"
             raise TopologyError(
-                f"{place}: after={after!r}, the edge has {count} element{'s' * (count != 1)}; expected a whole number "
-                "between 1 and one less. Give the edge more elements (with_counts), or cut at=…."
+                f"{place}: after={after!r}, the edge has {count} element{'s' * (count != 1)}; expected {expected}. "
+                "Give the edge more elements (with_counts), or cut at=…."
             )
         return AfterElements(int(after))
     if isinstance(at, bool) or not isinstance(at, int | float | np.number) or not 0.0 < at < 1.0:
@@ -129,7 +133,9 @@ class _ChainCut:
         grading = self._cut.of(structure.resolved_grading(edge), int(structure.topology.counts[edge]))
         vertex = tables.add_vertex(tables.name_between(first, second), self._position(edge, grading))
         curve = structure.curves.get(edge)
-        self._add_parts(curve, (first, vertex, second), grading)
+        # Elements that are shared out anew must meet the kinks of each part again.
+        kinks = isinstance(self._cut, AtParameter) and structure.gradings[edge] in (Pieces(), reverse(Pieces()))
+        self._add_parts(curve, (first, vertex, second), grading, kinks=kinks)
         tables.replace_edge((first, second), [(first, vertex), (vertex, second)])
         return _CutEdge(vertex, grading.place)
 
@@ -138,14 +144,17 @@ class _ChainCut:
         place = np.array([grading.nodal_place if nodal else grading.place])
         return np.asarray(self._structure.edge_points(edge, place)[0])
 
-    def _add_parts(self, curve: Curve | None, vertices: tuple[int, int, int], grading: GradingCut) -> None:
+    def _add_parts(
+        self, curve: Curve | None, vertices: tuple[int, int, int], grading: GradingCut, *, kinks: bool = False
+    ) -> None:
         place = grading.nodal_place if isinstance(curve, NodalCurve) else grading.place
         bounds = ((0.0, place), (place, 1.0))
         for k in range(2):
             first, second = vertices[k], vertices[k + 1]
             ends = self._tables.vertices[first], self._tables.vertices[second]
             part = None if curve is None else _meeting(piece(curve, *bounds[k]), ends)
-            self._tables.add_edge((first, second), grading.counts[k], part, grading.parts[k])
+            fits = kinks and grading.counts[k] > len(breaks_of(part))
+            self._tables.add_edge((first, second), grading.counts[k], part, Pieces() if fits else grading.parts[k])
 
     def _line(self, sides: tuple[int, int], start: _CutEdge, stop: _CutEdge) -> None:
         """Add the edge across a block from one cut edge to the opposite one, between two sides."""

@@ -73,6 +73,12 @@ def template(function: Callable[P, BlockStructure]) -> Callable[P, BlockStructur
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> BlockStructure:
+        for name in kwargs:
+            if name not in parameters:
+                raise TypeError(
+                    f"{function.__name__}() got an unexpected keyword argument {name!r}. "
+                    f"{suggestion(name, parameters)}Parameters: {', '.join(parameters)}."
+                )
         given = signature.bind(*args, **kwargs).arguments
         values = {name: parameters[name].checked(value) for name, value in given.items()}
         return function(**values)  # type: ignore[call-arg]
