@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hoblock.blocks import BlockStructure
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.cli import main
 from hoblock.curves import Arc
 from hoblock.errors import SceneError, TopologyError

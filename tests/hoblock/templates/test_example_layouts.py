@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.curves import Arc
 from hoblock.io.scene import load_mesh_scene
 from hoblock.templates import cylinder_in_channel, flag_in_channel

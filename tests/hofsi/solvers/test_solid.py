@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hoblock import Arc, BlockStructure, generate
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.expressions import compile_expression
 from hofsi import case
 from hofsi.errors import CaseError, NewtonError

@@ -75,7 +75,7 @@ from hoblock.quality import (
 from hoblock.topology import BlockTopology
 
 if TYPE_CHECKING:
-    from hoblock.build import build_structure
+    from hoblock.building import build_structure
     from hoblock.coarse_quads import structure_from_mesh, structure_from_quads
     from hoblock.fields import GridField, MeshField
     from hoblock.fit import fit_errors
@@ -100,7 +100,7 @@ __version__ = "0.1.0"
 _ON_USE = {
     "GridField": "hoblock.fields",
     "MeshField": "hoblock.fields",
-    "build_structure": "hoblock.build",
+    "build_structure": "hoblock.building",
     "chains": "hoblock.operations",
     "extracted": "hoblock.operations",
     "fit_errors": "hoblock.fit",

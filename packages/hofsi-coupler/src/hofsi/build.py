@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import BlockStructure, HoblockError, QuadMesh, det_jacobian_bounds, generate
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hofsi import case
 from hofsi.case_checks import check_order
 from hofsi.clock import Clock

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hoblock.blocks import BlockStructure
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.errors import HoblockError
 from hoblock.generate import generate
 from hoblock.mesh import QuadMesh

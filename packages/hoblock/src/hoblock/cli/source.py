@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hoblock.blocks import BlockStructure
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.cli.command import UsageError
 from hoblock.errors import InvalidMeshError
 from hoblock.generate import generate, raise_if_invalid

@@ -20,7 +20,7 @@ def read_points(path: Path, place: str) -> tuple[tuple[float, float], ...]:
     Parameters
     ----------
     path : Path
-        Two numbers a line, separated by commas, semicolons or blanks; empty lines, ``#`` comments and one line of
+        Two numbers a line, separated by commas, semicolons or blanks; empty lines, ``#`` comments and lines of
         headings are skipped.
     place : str
         Where the scene names the file, for messages.

@@ -8,8 +8,8 @@ from pathlib import Path as FilePath
 from types import MappingProxyType
 from typing import Any
 
-from hoblock.build_quads import build_quads
-from hoblock.build_template import build_template
+from hoblock.building.quads import build_quads
+from hoblock.building.template import build_template
 from hoblock.errors import SceneError
 from hoblock.expressions import RESERVED_NAMES, compile_expression
 from hoblock.io.scene_curves import read_curve

@@ -8,8 +8,8 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.build_curves import whole_curve
-from hoblock.build_paths import at
+from hoblock.building.curves import whole_curve
+from hoblock.building.paths import at
 from hoblock.curves import Curve, closest_parameters
 from hoblock.errors import CurveError
 from hoblock.scene import MeshScene, Path

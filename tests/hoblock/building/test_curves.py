@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.curves import (
     Arc,
     ArcLength,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from hoblock.blocks import BlockStructure
-from hoblock.build_curves import parametric
-from hoblock.build_paths import at
+from hoblock.building.curves import parametric
+from hoblock.building.paths import at
 from hoblock.errors import SceneError, TemplateError
 from hoblock.scene import Formula, TemplateScene
 from hoblock.scene.template import TemplateValue

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.build_paths import at, edge_pairs, take
+from hoblock.building.paths import at, edge_pairs, take
 from hoblock.expressions import Expression
 from hoblock.grading import (
     BoundaryLayer,

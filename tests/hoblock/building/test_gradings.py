@@ -5,7 +5,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.errors import ExpressionError, GradingError
 from hoblock.generate import generate
 from hoblock.grading import (

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.build_paths import at, pairs_of
+from hoblock.building.paths import at, pairs_of
 from hoblock.curves import LevelSet, crossing_of_level_sets, nearest_on_level_set
 from hoblock.errors import CurveError
 from hoblock.expressions import Expression

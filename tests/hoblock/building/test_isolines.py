@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.curves import LevelSet
 from hoblock.errors import CurveError, ExpressionError
 from hoblock.fields import GridField, MeshField

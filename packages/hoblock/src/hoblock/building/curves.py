@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock.build_isolines import level_set
-from hoblock.build_paths import Pair, at, edge_pairs, take
+from hoblock.building.isolines import level_set
+from hoblock.building.paths import Pair, at, edge_pairs, take
 from hoblock.curves import (
     Arc,
     ArcLength,

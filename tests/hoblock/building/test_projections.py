@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.curves import Spline, closest_parameters
 from hoblock.errors import CurveError, SceneError
 from hoblock.generate import generate

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hoblock.build import build_structure
+from hoblock.building import build_structure
 from hoblock.curves import Arc
 from hoblock.errors import CurveError, ExpressionError, GradingError, TopologyError
 from hoblock.expressions import compile_expression

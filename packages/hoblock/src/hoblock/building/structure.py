@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
-from hoblock.build_curves import build_curves
-from hoblock.build_gradings import build_gradings
-from hoblock.build_isolines import project_vertices
-from hoblock.build_paths import Pair, at, edge_pairs, pairs_of
-from hoblock.build_projections import project_onto_curves
-from hoblock.build_quads import build_quads
-from hoblock.build_template import build_template
+from hoblock.building.curves import build_curves
+from hoblock.building.gradings import build_gradings
+from hoblock.building.isolines import project_vertices
+from hoblock.building.paths import Pair, at, edge_pairs, pairs_of
+from hoblock.building.projections import project_onto_curves
+from hoblock.building.quads import build_quads
+from hoblock.building.template import build_template
 from hoblock.errors import TopologyError
 from hoblock.scene import CountScene, MeshScene
 from hoblock.topology import BlockTopology

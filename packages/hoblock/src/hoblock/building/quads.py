@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hoblock.blocks import BlockStructure
-from hoblock.build_paths import at
+from hoblock.building.paths import at
 from hoblock.coarse_quads import structure_from_quads
 from hoblock.scene import QuadsScene
 
