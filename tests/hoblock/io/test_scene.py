@@ -262,7 +262,7 @@ def test_constants_refused(constants, message):
             r"mesh\.curve\[0\]: an arc with 'center' and 'through'; expected exactly",
         ),
         ("mesh.curve[0].center=[1]", r"mesh\.curve\[0\]\.center: got a list of 1"),
-        ("mesh.curve[0].radius=1", r"mesh\.curve\[0\]\.radius: unknown key\. .*Known keys: on, kind, center, through"),
+        ("mesh.curve[0].radius=1", r"mesh\.curve\[0\]\.radius: unknown key\. .*Known keys: leaving, on, kind, center, through"),
         ("mesh.curve[2].x=cos(t)", r"mesh\.curve\[2\]\.x: expression \"cos\(t\)\": the name 't' has no meaning here"),
         ("mesh.curve[2].center=[0, 0]", r"mesh\.curve\[2\]\.center: unknown key"),
         ("mesh.curve=3", r"mesh\.curve: got the number 3; expected an array of tables\. Write \[\[mesh\.curve\]\]"),
@@ -274,7 +274,7 @@ def test_constants_refused(constants, message):
         ("mesh.grading[1].m=1", r"mesh\.grading\[1\]\.m: got 1; expected a number above -1 and below 1"),
         ("mesh.grading[1].m=-1.0", r"mesh\.grading\[1\]\.m: got -1\.0"),
         ("mesh.grading[2].m=-0.1", r"mesh\.grading\[2\]\.m: got -0\.1; expected a number of at least 0 and below 1"),
-        ("mesh.grading[3].m=0.1", r"mesh\.grading\[3\]\.m: unknown key\. .*Known keys: on, kind"),
+        ("mesh.grading[3].m=0.1", r"mesh\.grading\[3\]\.m: unknown key\. .*Known keys: leaving, on, kind"),
     ],
 )
 def test_mistakes_have_a_place(override, message):

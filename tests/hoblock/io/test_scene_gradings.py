@@ -108,7 +108,7 @@ def test_functions_are_expressions_in_s():
         ('kind = "tanh"\nstrength = 31', r"\.strength: got 31; expected a number of at least 0 and of at most 30"),
         (
             'kind = "tanh"\nfirst = 1\nends = "both"',
-            r"\.ends: unknown key\. .*Known keys: on, kind, first, second, stre",
+            r"\.ends: unknown key\. .*Known keys: leaving, on, kind, first, second, stre",
         ),
         ('kind = "tanh"\nfirst = 1\nunit = "fraction"', r"\.first: got 1; expected a number above 0 and below 1"),
         ('kind = "cosine"\nends = 2', r"\.ends: got the number 2; expected one of 'first', 'second', 'both'"),
@@ -130,3 +130,31 @@ def test_functions_are_expressions_in_s():
 def test_mistakes_have_a_place(text, message):
     with pytest.raises(SceneError, match=rf"^box\.toml: mesh\.grading\[0\]{message}"):
         grading(text)
+
+
+WALL = (
+    HEAD[: HEAD.index("[[mesh.grading]]")]
+    .replace("[mesh.blocks]", "e = [2, 0]\nf = [2, 1]\n[mesh.blocks]")
+    .replace('[["a", "b", "c", "d"]]', '[["a", "b", "c", "d"], ["b", "e", "f", "c"]]')
+)
+
+
+def test_edges_that_leave_a_wall_begin_there():
+    text = '[[mesh.grading]]\nleaving = "wall"\nkind = "boundary-layer"\nfirst_height = 0.01\n'
+    scene = read_mesh_scene(tomllib.loads(WALL + text + '[[mesh.count]]\nleaving = "wall"\nelements = 5\n'), "box.toml")
+    assert set(scene.gradings[0].on) == {("a", "d"), ("b", "c"), ("b", "e")}
+    assert scene.counts[0].on == scene.gradings[0].on
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('leaving = "wal"', r"mesh\.grading\[0\]\.leaving: got 'wal'\. Did you mean 'wall'"),
+        ('leaving = "wall"\non = "wall"', r"mesh\.grading\[0\]: got both 'on' and 'leaving'"),
+        ('leaving = "all"', r"mesh\.grading\[0\]\.leaving: no block edge has just one end on 'all'"),
+    ],
+)
+def test_mistakes_with_leaving(text, message):
+    every = WALL.replace("[mesh.edges]", '[mesh.edges]\nall = [["a", "b", "e", "f", "c", "d"]]')
+    with pytest.raises(SceneError, match=message):
+        read_mesh_scene(tomllib.loads(f'{every}[[mesh.grading]]\n{text}\nkind = "uniform"\n'), "box.toml")

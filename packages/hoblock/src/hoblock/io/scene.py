@@ -14,7 +14,7 @@ from hoblock.errors import SceneError
 from hoblock.expressions import RESERVED_NAMES, compile_expression
 from hoblock.io.scene_curves import read_curve
 from hoblock.io.scene_gradings import read_grading
-from hoblock.io.scene_paths import check_paths, check_vertices, paths_on
+from hoblock.io.scene_paths import check_paths, check_vertices, paths_on_or_leaving
 from hoblock.io.scene_structure import read_quads_of
 from hoblock.io.scene_template import names_of, read_template
 from hoblock.io.table import Table
@@ -96,8 +96,8 @@ def read_mesh_scene(data: Mapping[str, Any], file: str) -> MeshScene:
             blocks=MappingProxyType(blocks),
             edges=MappingProxyType(edges),
             curves=tuple(read_curve(table, vertices, edges, constants, folder) for table in mesh.tables("curve")),
-            counts=tuple(_count(table, vertices, edges) for table in mesh.tables("count")),
-            gradings=tuple(read_grading(table, vertices, edges, constants) for table in mesh.tables("grading")),
+            counts=tuple(_count(table, vertices, edges, blocks) for table in mesh.tables("count")),
+            gradings=tuple(read_grading(table, vertices, edges, blocks, constants) for table in mesh.tables("grading")),
             elements=mesh.integer("elements", 1, minimum=1),
             title=title,
             file=file,
@@ -222,7 +222,13 @@ def _edges(table: Table, vertices: Mapping[str, Any]) -> dict[str, tuple[Path, .
     return edges
 
 
-def _count(table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]]) -> CountScene:
-    count = CountScene(paths_on(table, vertices, edges), table.integer("elements", minimum=1), table.place)
+def _count(
+    table: Table,
+    vertices: Mapping[str, Any],
+    edges: Mapping[str, tuple[Path, ...]],
+    blocks: Mapping[str, tuple[Quad, ...]],
+) -> CountScene:
+    on = paths_on_or_leaving(table, vertices, edges, blocks)
+    count = CountScene(on, table.integer("elements", minimum=1), table.place)
     table.finish()
     return count

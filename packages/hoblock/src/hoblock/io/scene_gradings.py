@@ -7,10 +7,10 @@ from typing import Any
 
 from hoblock.errors import SceneError
 from hoblock.expressions import compile_expression
-from hoblock.io.scene_paths import paths_on
+from hoblock.io.scene_paths import paths_on_or_leaving
 from hoblock.io.table import Table
 from hoblock.io.values import Limits, describe, integer_of, number_of
-from hoblock.scene import GradingScene, Path
+from hoblock.scene import GradingScene, Path, Quad
 from hoblock.scene.gradings import GradingKind, GradingValue
 
 __all__ = ["read_grading"]
@@ -20,10 +20,14 @@ _POSITIVE = Limits(above=0.0)
 
 
 def read_grading(
-    table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]], constants: Mapping[str, float]
+    table: Table,
+    vertices: Mapping[str, Any],
+    edges: Mapping[str, tuple[Path, ...]],
+    blocks: Mapping[str, tuple[Quad, ...]],
+    constants: Mapping[str, float],
 ) -> GradingScene:
     """Read one table."""
-    on = paths_on(table, vertices, edges)
+    on = paths_on_or_leaving(table, vertices, edges, blocks)
     asked = table.string("kind", choices=tuple(_READERS))
     kind: GradingKind = next(kind for kind in _READERS if kind == asked)
     values = _READERS[kind](_Keys(table, constants))

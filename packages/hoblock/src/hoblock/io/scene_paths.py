@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import pairwise
 from typing import Any
 
 from hoblock.errors import SceneError
 from hoblock.io.table import Table
 from hoblock.io.values import path_of
-from hoblock.scene import Path
+from hoblock.scene import Path, Quad
 from hoblock.spelling import listing, suggestion
 
-__all__ = ["check_paths", "check_vertices", "paths_on"]
+__all__ = ["check_paths", "check_vertices", "paths_on", "paths_on_or_leaving"]
 
 
 def paths_on(table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tuple[Path, ...]]) -> tuple[Path, ...]:
@@ -32,6 +33,29 @@ def paths_on(table: Table, vertices: Mapping[str, Any], edges: Mapping[str, tupl
             path = path_of(part, where)
             check_vertices(path, vertices, where)
             found.append(path)
+    return tuple(found)
+
+
+def paths_on_or_leaving(
+    table: Table,
+    vertices: Mapping[str, Any],
+    edges: Mapping[str, tuple[Path, ...]],
+    blocks: Mapping[str, tuple[Quad, ...]],
+) -> tuple[Path, ...]:
+    """Read the paths at ``on``, or the name at ``leaving``: all block edges with just one end on the named edges.
+
+    Those begin at that end.
+    """
+    if not table.has("leaving"):
+        return paths_on(table, vertices, edges)
+    if table.has("on"):
+        raise SceneError("got both 'on' and 'leaving'; expected one of them", table.place)
+    place, name = table.place_of("leaving"), table.string("leaving")
+    wall = {vertex for path in _named(name, edges, place) for vertex in path}
+    sides = [side for quads in blocks.values() for quad in quads for side in pairwise((*quad, quad[0]))]
+    found = dict.fromkeys((a, b) if a in wall else (b, a) for a, b in sides if (a in wall) != (b in wall))
+    if not found:
+        raise SceneError(f"no block edge has just one end on {name!r}; name paths by 'on' instead", place)
     return tuple(found)
 
 
