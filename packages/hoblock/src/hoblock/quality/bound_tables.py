@@ -26,6 +26,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from hoblock.quality.scratch import scratch
 from hoblock.reference import bernstein_from_legendre, gauss_legendre, gauss_lobatto, lagrange, lagrange_derivative
 
 Array = NDArray[np.float64]
@@ -119,12 +120,12 @@ class Bounder:
     def extremes(self, values: Array) -> tuple[Array, Array]:
         """Bounds (k,) of polynomials (2p, 2p, k), without regard to rounding."""
         if self.full is not None:
-            coefficients = _both(self.full, values)
+            coefficients = _both("coefficients", self.full, values)
             return coefficients.min(axis=0), coefficients.max(axis=0)
         degree, m = len(self.to_bernstein) - 1, len(self.to_modes)
-        modes = _both(self.to_modes, values).reshape(m, m, -1)
+        modes = _both("modes", self.to_modes, values).reshape(m, m, -1)
         low = np.ascontiguousarray(modes[: degree + 1, : degree + 1])
-        coefficients = _both(self.to_bernstein, low)
+        coefficients = _both("coefficients", self.to_bernstein, low)
         np.abs(modes, out=modes)
         rest = modes[degree + 1 :].reshape(-1, modes.shape[2]).sum(axis=0)
         rest += modes[: degree + 1, degree + 1 :].sum(axis=(0, 1))
@@ -137,11 +138,15 @@ class Bounder:
         return result[..., :-1].max(axis=-1), result[..., -1]
 
 
-def _both(matrix: Array, values: Array) -> Array:
-    """Apply a matrix along both directions of (m, m, k); the result as (q², k)."""
+def _both(name: str, matrix: Array, values: Array) -> Array:
+    """Apply a matrix along both directions of (m, m, k); the result as (q², k), in the scratch array of a name."""
     m, count = values.shape[1], values.shape[2]
-    first = (matrix @ values.reshape(m, -1)).reshape(-1, m, count)
-    return np.asarray((matrix @ first).reshape(-1, count))
+    rows = len(matrix)
+    first = scratch("first direction", (rows, m * count))
+    np.matmul(matrix, values.reshape(m, -1), out=first)
+    both = scratch(name, (rows, rows, count))
+    np.matmul(matrix, first.reshape(rows, m, count), out=both)
+    return both.reshape(-1, count)
 
 
 @cache

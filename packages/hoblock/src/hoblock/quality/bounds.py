@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hoblock.quality.bound_tables import UNIT, Bounder, bounders, point_tables
 from hoblock.quality.coordinates import ElementCoordinates
+from hoblock.quality.scratch import scratch
 
 Array = NDArray[np.float64]
 
@@ -18,16 +19,20 @@ __all__ = ["coefficient_error", "in_mesh_units", "scaled_bounds"]
 def _det_values(x: Array, order: int) -> tuple[Array, Array, Array]:
     """det J of scaled elements at their 2p × 2p Gauss points, shape (2p, 2p, k), and the largest |x_ξ| and |x_η| (k,).
 
-    One direction after the other, each as a matrix product over all elements.
+    One direction after the other, each as a matrix product over all elements. The values are overwritten by the next
+    call of the thread.
     """
     tables = point_tables(order, 0)
     m, n, k = 2 * order, order + 1, x.shape[2]
-    along_xi = _stacked(order) @ x.reshape(2, n, n, k)  # (2, n, 2m, k): values, then derivatives
+    along_xi = scratch("along xi", (2, n, 2 * m, k))
+    np.matmul(_stacked(order), x.reshape(2, n, n, k), out=along_xi)  # values, then derivatives
     flat = along_xi.reshape(2, n, 2 * m * k)
-    by_eta = tables.D[0, :m] @ flat[:, :, : m * k]
-    by_xi = tables.N[0, :m] @ flat[:, :, m * k :]
+    by_xi, by_eta = scratch("by xi", (2, m, m * k)), scratch("by eta", (2, m, m * k))
+    np.matmul(tables.D[0, :m], flat[:, :, : m * k], out=by_eta)
+    np.matmul(tables.N[0, :m], flat[:, :, m * k :], out=by_xi)
     largest = [_largest(tangents.reshape(-1, k)) for tangents in (by_xi, by_eta)]
-    det_J = by_xi[0] * by_eta[1]
+    det_J = by_xi[0]
+    det_J *= by_eta[1]
     by_eta[0] *= by_xi[1]
     det_J -= by_eta[0]
     return np.asarray(det_J.reshape(m, m, k)), largest[0], largest[1]
