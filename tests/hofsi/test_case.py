@@ -10,6 +10,7 @@ import pytest
 from hofsi import case as module
 from hofsi.case import (
     AngleOptimisationSettings,
+    BarrierSettings,
     Case,
     CouplingSettings,
     LinearSettings,
@@ -33,7 +34,8 @@ def test_defaults_are_those_of_the_scene_format() -> None:
     assert dataclasses.astuple(NonlinearSettings()) == (1e-10, 25)
     assert dataclasses.astuple(LinearSettings()) == ("direct", 1e-10)
     assert dataclasses.astuple(OutputSettings()) == (True, 10, True, None)
-    assert dataclasses.astuple(PseudoSolidSettings()) == (-1.0, 0.3)
+    assert dataclasses.astuple(BarrierSettings()) == ((), "auto", 4, "bar", 1.0, 1.0, 0.1)
+    assert dataclasses.astuple(PseudoSolidSettings()) == ((), "auto", 4, -1.0, 0.3, False)
     assert AngleOptimisationSettings().power == 2
     assert AngleOptimisationSettings().upper is None
 

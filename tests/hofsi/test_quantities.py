@@ -59,7 +59,7 @@ class Steps:
             p[space.pressure_cells] = pressure(*np.moveaxis(places[:, boundary_first(order)[0]], -1, 0))
             u = velocity(*mesh.points.T)
             state["fluid"] = FluidState((u,), p, (mesh.points,), np.zeros_like(u), 0.1 * step)
-            state["mesh"] = MeshState(fluid.structure, mesh, 1.0)
+            state["mesh"] = MeshState(mesh, fluid.structure.vertices, np.zeros((0, 2)), 1.0)
         if solid is not None:
             d = displacement(*solid.mesh.points.T)
             state["solid"] = SolidState((d,), (10.0 * d,), 0.1 * step)

@@ -9,6 +9,7 @@ import pytest
 
 from hoblock.errors import ExpressionError, SceneError
 from hofsi.case import (
+    BarrierSettings,
     Case,
     Displacement,
     DoNothing,
@@ -16,7 +17,6 @@ from hofsi.case import (
     NoSlip,
     Point,
     Probe,
-    PseudoSolidSettings,
     Unsteady,
     Velocity,
 )
@@ -41,7 +41,7 @@ def test_a_complete_scene(scene_file: Path) -> None:
     assert case.mesh.order == 2
     assert len(case.mesh.blocks["fluid"]) == 5
     assert case.time == Unsteady(dt=0.1, start=0.0, end=2.0, steps=20)
-    assert case.mover == PseudoSolidSettings()
+    assert case.mover == BarrierSettings()
     assert case.coupling.geometry == "extrapolated"
     assert case.output.period_of == "u_x"
     assert case.motions == ()

@@ -9,23 +9,20 @@ import pytest
 from hoblock.errors import SceneError
 from hoblock.io.table import Table
 from hofsi.case import (
-    AngleOptimisationSettings,
     CouplingSettings,
     LinearSettings,
     NonlinearSettings,
     OutputSettings,
-    PseudoSolidSettings,
     Steady,
     Unsteady,
 )
 from hofsi.errors import CaseError
-from hofsi.io.settings import read_coupling, read_linear, read_mover, read_nonlinear, read_output, read_time
+from hofsi.io.settings import read_coupling, read_linear, read_nonlinear, read_output, read_time
 
 UNSTEADY = Unsteady(0.1, 0.0, 1.0, 10)
 
 
 def test_empty_tables_give_the_defaults() -> None:
-    assert read_mover(Table({})) == PseudoSolidSettings()
     assert read_coupling(Table({}), UNSTEADY) == CouplingSettings()
     assert read_nonlinear(Table({})) == NonlinearSettings()
     assert read_linear(Table({})) == LinearSettings()
@@ -35,20 +32,6 @@ def test_empty_tables_give_the_defaults() -> None:
 def test_a_steady_coupling_is_implicit() -> None:
     assert read_coupling(Table({}), Steady()) == CouplingSettings(geometry="implicit")
     assert read_coupling(Table({"geometry": "extrapolated"}), Steady()).geometry == "extrapolated"  # refused later on
-
-
-def test_pseudo_solid() -> None:
-    data = {"type": "pseudo-solid", "exponent": 2, "poissons_ratio": -0.5}
-    assert read_mover(Table(data)) == PseudoSolidSettings(2.0, -0.5)
-
-
-def test_angle_optimisation() -> None:
-    assert read_mover(Table({"type": "angle-optimisation"})) == AngleOptimisationSettings()
-    values: dict[str, Any] = {
-        "power": 4, "sweeps": 7, "iterations": 2, "lower": 0.25, "upper": 3.0, "penalty": 5.0, "radius": 0.05,
-        "projection": "end", "damping": 0.0,
-    }  # fmt: skip
-    assert read_mover(Table({"type": "angle-optimisation"} | values)) == AngleOptimisationSettings(**values)
 
 
 def test_coupling() -> None:
@@ -112,26 +95,6 @@ def test_times_that_do_not_go_together(data: dict[str, Any], match: str) -> None
 def test_mistakes_of_time(data: dict[str, Any], match: str) -> None:
     with pytest.raises(SceneError, match=match):
         read_time(Table(data, "time"))
-
-
-@pytest.mark.parametrize(
-    ("data", "match"),
-    [
-        ({"type": "pseudosolid"}, r"mover.type: got 'pseudosolid'. Did you mean 'pseudo-solid'"),
-        ({"poissons_ratio": 0.5}, r"mover.poissons_ratio: got 0.5"),
-        ({"power": 2}, r"mover.power: unknown key"),
-        ({"type": "angle-optimisation", "power": 3}, r"mover.power: got 3; expected an even number"),
-        ({"type": "angle-optimisation", "exponent": 3}, r"mover.exponent: unknown key"),
-        ({"type": "angle-optimisation", "lower": 1.0}, r"mover.lower: got 1.0; .* below 1"),
-        ({"type": "angle-optimisation", "upper": 0.5}, r"mover.upper: got 0.5; .* above 1"),
-        ({"type": "angle-optimisation", "projection": "always"}, r"mover.projection: got 'always'"),
-        ({"type": "angle-optimisation", "radius": 0}, r"mover.radius: got 0"),
-        ({"type": "angle-optimisation", "damping": -1}, r"mover.damping: got -1"),
-    ],
-)
-def test_mistakes_of_the_mover(data: dict[str, Any], match: str) -> None:
-    with pytest.raises(SceneError, match=match):
-        read_mover(Table(data, "mover"))
 
 
 @pytest.mark.parametrize(

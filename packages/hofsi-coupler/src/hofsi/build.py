@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hoblock import BlockStructure, HoblockError, QuadMesh, det_jacobian_bounds, generate
+from hoblock import BlockStructure, HoblockError, MoverError, QuadMesh, det_jacobian_bounds, generate
 from hoblock.building import build_structure
 from hofsi import case
 from hofsi.case_checks import check_order
@@ -19,10 +19,10 @@ from hofsi.errors import CaseError
 from hofsi.marching import FluidMarch, March, SolidMarch
 
 if TYPE_CHECKING:
-    from hoblock.movers import Mover
+    from hoblock.motion import DrivenEdges
     from hofsi.coupling.interface import Interface
     from hofsi.coupling.relaxation import Accelerator
-    from hofsi.motion import DrivenEdges
+    from hofsi.motion import MeshMotion
     from hofsi.solvers.fluid import FluidSolver
     from hofsi.solvers.solid import SolidSolver
 
@@ -131,15 +131,15 @@ def _fluid_alone(asked: case.Case, structure: BlockStructure, mesh: QuadMesh, cl
     check_order(asked)
     motion = displacement = moving = None
     if asked.motions:
-        from hofsi.motion import MeshMotion
-
         driven, displacement = _driven(asked, structure, mesh, ())
-        motion = MeshMotion(structure, mesh, _mover(asked.mover, structure, driven.vertices), driven)
+        motion = _motion(asked.mover, structure, mesh, driven)
         reference, moving = motion.reference, driven.nodes
     else:
         from hofsi.motion import MeshState
 
-        reference = MeshState(structure, mesh, float(det_jacobian_bounds(mesh)[0].min()))
+        nothing = np.zeros((0, 2))
+        bound = float(det_jacobian_bounds(mesh)[0].min())
+        reference = MeshState(mesh, structure.vertices, nothing, bound, structure_of=lambda: structure)
     nobody = np.zeros(0, dtype=np.int64)
     solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, nobody, moving)
     march = FluidMarch(solver, reference, motion, displacement, clock)
@@ -149,7 +149,6 @@ def _fluid_alone(asked: case.Case, structure: BlockStructure, mesh: QuadMesh, cl
 def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: BlockStructure, clock: Clock) -> Problem:
     from hofsi.coupling.interface import match_interface
     from hofsi.coupling.partitioned import CoupledMarch
-    from hofsi.motion import MeshMotion
     from hofsi.solvers.fluid import FluidSolver
     from hofsi.solvers.solid import SolidSolver
 
@@ -159,7 +158,7 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     interface = match_interface(fluid, solid, order)
     solid_mesh = _mesh(solid, order)
     driven, prescribed = _driven(asked, fluid, mesh, interface.fluid_edges)
-    motion = MeshMotion(fluid, mesh, _mover(asked.mover, fluid, driven.vertices), driven)
+    motion = _motion(asked.mover, fluid, mesh, driven)
     fluid_solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, interface.fluid, driven.nodes)
     solid_solver = SolidSolver(solid_mesh, asked.solids, asked.nonlinear, asked.linear)
     march = CoupledMarch(
@@ -169,11 +168,23 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     return Problem(asked, march, *parts, interface, clock)
 
 
+def _motion(settings: case.MoverSettings, structure: BlockStructure, mesh: QuadMesh, driven: DrivenEdges) -> MeshMotion:
+    """Mover and motion of the fluid's mesh."""
+    from hofsi.motion import MeshMotion
+    from hofsi.movers import make_mover
+
+    try:
+        mover = make_mover(settings, structure, mesh, driven)
+        return MeshMotion(structure, mesh, mover, driven, inherit=settings.inherit, halvings=settings.halvings)
+    except MoverError as error:
+        raise CaseError(str(error), "mover") from error
+
+
 def _driven(
     asked: case.Case, structure: BlockStructure, mesh: QuadMesh, wet: tuple[int, ...]
 ) -> tuple[DrivenEdges, Callable[[float], Array]]:
     """Driven edges of the fluid and their prescribed displacement as a function of time."""
-    from hofsi.motion import driven_edges
+    from hoblock.motion import driven_edges
 
     groups = structure.topology.edge_groups
     moving = [int(edge) for motion in asked.motions for name in motion.on for edge in groups[name]]
@@ -202,30 +213,6 @@ def _driven(
         return result
 
     return driven, displacement
-
-
-def _mover(settings: case.MoverSettings, structure: BlockStructure, driven: Index) -> Mover:
-    if isinstance(settings, case.PseudoSolidSettings):
-        from hoblock.movers import PseudoSolid
-
-        return PseudoSolid(structure, driven, exponent=settings.exponent, poissons_ratio=settings.poissons_ratio)
-    from hoblock.movers import AngleOptimisation
-
-    return AngleOptimisation(
-        structure,
-        driven,
-        power=settings.power,
-        sweeps=settings.sweeps,
-        iterations=settings.iterations,
-        lower=settings.lower,
-        upper=settings.upper,
-        penalty=settings.penalty,
-        radius=settings.radius,
-        projection=settings.projection,
-        damping=settings.damping,
-        predictor=settings.predictor,
-        ideal=settings.ideal,
-    )
 
 
 def _accelerator(settings: case.CouplingSettings) -> Accelerator:

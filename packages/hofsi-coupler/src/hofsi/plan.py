@@ -14,7 +14,17 @@ from hoblock.generate import generate
 from hoblock.mesh import QuadMesh
 from hoblock.numbering import number_nodes
 from hoblock.quality import scaled_jacobian
-from hofsi.case import Case, Fluid, PseudoSolidSettings, Solid, Steady, Unsteady
+from hofsi.case import (
+    AngleOptimisationSettings,
+    BarrierSettings,
+    Case,
+    Fluid,
+    PseudoSolidSettings,
+    RuleSettings,
+    Solid,
+    Steady,
+    Unsteady,
+)
 from hofsi.case_checks import check_case
 from hofsi.errors import CaseError
 
@@ -22,6 +32,12 @@ __all__ = ["Item", "Plan", "plan"]
 
 _LAWS = {"linear": "linear elasticity", "st-venant-kirchhoff": "St. Venant–Kirchhoff"}
 _MODELS = {"navier-stokes": "Navier–Stokes", "stokes": "Stokes"}
+_MOVERS = {
+    BarrierSettings: "barrier energy",
+    PseudoSolidSettings: "pseudo-solid",
+    AngleOptimisationSettings: "angle optimisation",
+    RuleSettings: "rule",
+}
 _ACCELERATIONS = {"iqn-ils": "IQN-ILS", "aitken": "Aitken's relaxation", "constant": "constant relaxation"}
 
 
@@ -221,7 +237,7 @@ def _coupling(case: Case, meshes: _Meshes) -> Iterator[Item]:
     if _moves(case) and meshes.fluid is not None:
         structure = meshes.fluid[0]
         moved = np.setdiff1d(np.arange(len(structure.vertices)), structure.topology.boundary_vertices)
-        kind = "pseudo-solid" if isinstance(case.mover, PseudoSolidSettings) else "angle optimisation"
+        kind = _MOVERS[type(case.mover)]
         vertices = "1 free block vertex follows" if len(moved) == 1 else f"{len(moved)} free block vertices follow"
         yield Item("mover", f"{kind}: {vertices} {meshes.driven} driven ones")
     if not _coupled(case):

@@ -83,6 +83,16 @@ class LengthTable:
         found[wanted == 0.0], found[wanted == self.length] = 0.0, 1.0
         return found.reshape(lengths.shape)
 
+    def lengths(self, t: Array) -> Array:
+        """Arc lengths from the first end at parameters of any shape; clipped to [0, 1]."""
+        t = np.asarray(t, dtype=float)
+        inside = np.clip(t.ravel(), 0.0, 1.0)
+        panel = np.clip(np.searchsorted(self.panels, inside, side="right") - 1, 0, len(self.speeds) - 1)
+        half = 0.5 * np.diff(self.panels)[panel]
+        x = (inside - self.panels[panel]) / half - 1.0
+        passed = self.starts[panel] + half * _series(_antiderivative(self.speeds[panel]), x)
+        return np.asarray(np.where(inside == 1.0, self.length, passed).reshape(t.shape))
+
 
 def _series(coefficients: Array, x: Array) -> Array:
     """Legendre series, one a row, at one place each."""

@@ -37,6 +37,12 @@ class NormalEquations:
     twist: Complex
     gradient: Complex
 
+    def step_along(self, tangents: Complex, damping: float) -> Complex:
+        """The same where vertices can move along unit tangents only: s = t (tᵀJᵀh)/(tᵀJᵀJ t + damping·tᵀJᵀJ t)."""
+        curvature = 0.5 * (self.square + (self.twist * tangents.conj() ** 2).real) * (1.0 + damping)
+        slope = (self.gradient * tangents.conj()).real
+        return tangents * np.where(curvature > 0.0, slope / np.where(curvature > 0.0, curvature, 1.0), 0.0)
+
     def step(self, damping: float) -> Complex:
         """Solve (JᵀJ + damping·trace(JᵀJ) I) s = Jᵀh; a singular matrix gives the shortest of its solutions."""
         square = (1.0 + 2.0 * damping) * self.square

@@ -13,6 +13,7 @@ from hoblock.errors import MoverError
 from hoblock.movers._roles import VertexRoles
 from hoblock.movers._vertex_patches import VertexPatches, vertex_patches
 from hoblock.movers.pseudo_solid import PseudoSolid
+from hoblock.movers.sliding import Sliding
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -82,11 +83,13 @@ class AngleOptimisation:
         The angle D. "reference": the angle between the chords of the reference. "right": 90° at regular vertices, the
         reference angle at others. A vertex is regular if the mean reference angle of its blocks is within 15° of 90°:
         four blocks inside, two at a straight wall, one in a corner, three around a re-entrant corner.
+    sliding : ndarray of int, optional
+        Boundary vertices that slide along their part of the boundary, ascending: their steps follow its tangent.
 
     Attributes
     ----------
     free : ndarray of int
-        Vertices that are placed, ascending.
+        Vertices inside that are placed, ascending.
 
     Raises
     ------
@@ -107,6 +110,7 @@ class AngleOptimisation:
     damping: float = field(default=0.3, kw_only=True)
     predictor: bool = field(default=True, kw_only=True)
     ideal: Literal["reference", "right"] = field(default="reference", kw_only=True)
+    sliding: Index | None = field(default=None, kw_only=True)
     free: Index = field(init=False)
     _roles: VertexRoles = field(init=False, repr=False)
     _patches: tuple[VertexPatches, ...] = field(init=False, repr=False)
@@ -115,10 +119,10 @@ class AngleOptimisation:
 
     def __post_init__(self) -> None:
         self._check()
-        roles = VertexRoles.of(self.reference, self.driven)
-        solid = PseudoSolid(self.reference, roles.driven) if self.predictor else None
+        roles = VertexRoles.of(self.reference, self.driven, self.sliding)
+        solid = PseudoSolid(self.reference, roles.driven, sliding=self.sliding) if self.predictor else None
         limits = self.radius * _shortest_edges(self.reference)
-        patches = vertex_patches(self.reference, roles.free, _ideal_angles(self.reference, self.ideal))
+        patches = vertex_patches(self.reference, roles.movable, _ideal_angles(self.reference, self.ideal))
         for name, value in (
             ("driven", roles.driven),
             ("free", roles.free),
@@ -142,6 +146,7 @@ class AngleOptimisation:
         penalty: float = 10.0,
         radius: float = 0.2,
         projection: Literal["every", "end"] = "every",
+        sliding: Index | None = None,
     ) -> AngleOptimisation:
         """Return the mover in the paper's form: undamped, from the last state, 90° wherever it is possible.
 
@@ -161,15 +166,31 @@ class AngleOptimisation:
             damping=0.0,
             predictor=False,
             ideal="right",
+            sliding=sliding,
         )
 
     @property
     def has_free_vertices(self) -> bool:
         """Whether there is a vertex to place; if not, a move only copies the driven positions."""
-        return len(self.free) > 0
+        return len(self._roles.movable) > 0
 
-    def move(self, current: Array, positions: Array) -> Array:
-        """Return the vertices for a position of the driven ones; see `Mover.move`.
+    @property
+    def depends_on_state(self) -> bool:
+        """Whether a move depends on the last state."""
+        return True
+
+    @property
+    def paths(self) -> Sliding:
+        """The sliding vertices with their paths."""
+        return self._roles.sliding
+
+    @property
+    def tangent_edges(self) -> Index:
+        """Edges whose end tangents a move takes into account: none."""
+        return np.zeros(0, dtype=np.int64)
+
+    def move(self, current: Array, positions: Array, tangents: Array | None = None) -> Array:
+        """Return the vertices for a position of the driven ones; see `Mover.move`. ``tangents`` are ignored.
 
         Raises
         ------
@@ -179,16 +200,17 @@ class AngleOptimisation:
         roles = self._roles
         current = roles.checked(current, "current", np.arange(len(roles.reference)))
         positions = roles.checked(positions, "positions", self.driven)
-        start = current[self.free]
+        start, along = current[self.free], roles.sliding.coordinates(current[roles.sliding.vertices])
         if self._solid is not None:
-            start = start + self._solid.displacement(positions - current[self.driven])
-        vertices = roles.assembled(positions, start)
+            free, slid = self._solid.response(positions - current[self.driven])
+            start, along = start + free, along + slid
+        vertices = roles.assembled(positions, start, along)
         points = vertices.view(np.complex128)[:, 0]
         self._optimise(points)
         return vertices
 
     def _optimise(self, points: Complex) -> None:
-        """Move the free vertices in place: Gauss-Seidel sweeps of local steps."""
+        """Move the free and sliding vertices in place: Gauss-Seidel sweeps of local steps."""
         origin = points.copy()
         every = self.projection == "every"
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -197,12 +219,18 @@ class AngleOptimisation:
                     for _ in range(self.iterations):
                         self._step(points, patch, origin if every else None)
         if not every:
-            points[self.free] = _projected(points[self.free], origin[self.free], self._limits[self.free])
+            some = self._roles.movable
+            points[some] = _projected(points[some], origin[some], self._limits[some])
+            self._return_to_paths(points, some)
 
     def _step(self, points: Complex, patch: VertexPatches, origin: Complex | None) -> None:
         equations = patch.normal_equations(points, self.power, self.lower, self.upper, self.penalty)
         vertices = patch.vertices
-        placed = points[vertices] - equations.step(self.damping)
+        step = equations.step(self.damping)
+        slides = np.isin(vertices, self._roles.sliding.vertices)
+        if slides.any():
+            step[slides] = equations.step_along(self._tangents(points)[vertices], self.damping)[slides]
+        placed = points[vertices] - step
         if origin is not None:
             placed = _projected(placed, origin[vertices], self._limits[vertices])
         finite = np.isfinite(placed)
@@ -214,6 +242,23 @@ class AngleOptimisation:
                 "step; expected neighbours at a distance. Vertices of its blocks coincide: move in smaller steps."
             )
         points[vertices] = placed
+        if slides.any():
+            self._return_to_paths(points, vertices)
+
+    def _tangents(self, points: Complex) -> Complex:
+        """Unit tangents of the paths at the sliding vertices; zero at all others."""
+        sliding, result = self._roles.sliding, np.zeros_like(points)
+        s = sliding.coordinates(_pairs(points[sliding.vertices]))
+        t = sliding.derivatives(s)[0]
+        result[sliding.vertices] = t[:, 0] + 1j * t[:, 1]
+        return result
+
+    def _return_to_paths(self, points: Complex, vertices: Index) -> None:
+        """Put sliding vertices on their paths again: a step along the tangent leaves a curved one."""
+        sliding = self._roles.sliding
+        some = np.isin(sliding.vertices, vertices)
+        back = sliding.positions(sliding.coordinates(_pairs(points[sliding.vertices])))
+        points[sliding.vertices[some]] = back[some, 0] + 1j * back[some, 1]
 
     def _check(self) -> None:
         """Raise for a parameter that is out of range."""
@@ -233,6 +278,11 @@ class AngleOptimisation:
         for name, value, good, expected in checks:
             if not good:
                 raise MoverError(f"angle optimisation: {name} is {value!r}; expected {expected}.")
+
+
+def _pairs(points: Complex) -> Array:
+    """Complex points as (k, 2)."""
+    return np.stack([points.real, points.imag], axis=-1)
 
 
 def _projected(points: Complex, center: Complex, radius: Array) -> Complex:

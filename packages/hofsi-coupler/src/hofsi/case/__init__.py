@@ -29,6 +29,15 @@ from hofsi.case.materials import (
     Solid,
     VectorExpression,
 )
+from hofsi.case.movers import (
+    AngleOptimisationSettings,
+    BarrierSettings,
+    MotionSettings,
+    MoverSettings,
+    PseudoSolidSettings,
+    RuleSettings,
+    RuleVertex,
+)
 from hofsi.case.quantities import (
     Force,
     Point,
@@ -37,13 +46,10 @@ from hofsi.case.quantities import (
     Quantity,
 )
 from hofsi.case.settings import (
-    AngleOptimisationSettings,
     CouplingSettings,
     LinearSettings,
-    MoverSettings,
     NonlinearSettings,
     OutputSettings,
-    PseudoSolidSettings,
     Steady,
     TimeSettings,
     Unsteady,
@@ -54,6 +60,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AngleOptimisationSettings",
+    "BarrierSettings",
     "Case",
     "CouplingSettings",
     "Displacement",
@@ -64,6 +71,7 @@ __all__ = [
     "Free",
     "LinearSettings",
     "Motion",
+    "MotionSettings",
     "MoverSettings",
     "NoSlip",
     "NonlinearSettings",
@@ -75,6 +83,8 @@ __all__ = [
     "PseudoSolidSettings",
     "Quantity",
     "Roller",
+    "RuleSettings",
+    "RuleVertex",
     "Slip",
     "Solid",
     "SolidCondition",
@@ -115,7 +125,7 @@ class Case:
     solids: tuple[Solid, ...]
     time: TimeSettings
     motions: tuple[Motion, ...] = ()
-    mover: MoverSettings = field(default_factory=PseudoSolidSettings)
+    mover: MoverSettings = field(default_factory=BarrierSettings)
     coupling: CouplingSettings = field(default_factory=CouplingSettings)
     nonlinear: NonlinearSettings = field(default_factory=NonlinearSettings)
     linear: LinearSettings = field(default_factory=LinearSettings)

@@ -1,4 +1,4 @@
-"""Settings of mover, time, coupling, solvers and output."""
+"""Settings of time, coupling, solvers and output."""
 
 from __future__ import annotations
 
@@ -6,82 +6,14 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 __all__ = [
-    "AngleOptimisationSettings",
     "CouplingSettings",
     "LinearSettings",
-    "MoverSettings",
     "NonlinearSettings",
     "OutputSettings",
-    "PseudoSolidSettings",
     "Steady",
     "TimeSettings",
     "Unsteady",
 ]
-
-
-@dataclass(frozen=True)
-class PseudoSolidSettings:
-    """Block vertices follow as those of an elastic solid.
-
-    Attributes
-    ----------
-    exponent : float
-        Of the blocks' stiffness, E = (A/A_min)^exponent.
-    poissons_ratio : float
-        In (-1, 0.5).
-    """
-
-    exponent: float = -1.0
-    poissons_ratio: float = 0.3
-
-
-@dataclass(frozen=True)
-class AngleOptimisationSettings:
-    """Block vertices are placed for the best angles, one after the other.
-
-    Attributes
-    ----------
-    power : int
-        Even; of the angles' errors.
-    sweeps : int
-        Over all vertices, a step.
-    iterations : int
-        Gauss–Newton steps a vertex and sweep.
-    lower, upper : float
-        Limits of edge lengths as fractions of the initial ones; None for no upper limit.
-    penalty : float
-        C of the length penalty, per length⁴.
-    radius : float
-        Largest motion of a vertex in a step, as a fraction of the shortest edge at it.
-    projection : {"every", "end"}
-        Whether the radius limits every iteration or the end of a step.
-    damping : float
-        Of the Gauss–Newton matrix, as a fraction of its trace; not negative.
-    predictor : bool
-        Whether a pseudo-solid places the vertices before they are optimised.
-    ideal : {"reference", "right"}
-        The angles aimed at: those of the reference position, or 90° at regular vertices.
-    """
-
-    power: int = 2
-    sweeps: int = 5
-    iterations: int = 1
-    lower: float = 0.5
-    upper: float | None = None
-    penalty: float = 10.0
-    radius: float = 0.2
-    projection: Literal["every", "end"] = "every"
-    damping: float = 0.3
-    predictor: bool = True
-    ideal: Literal["reference", "right"] = "reference"
-
-    @staticmethod
-    def as_published() -> AngleOptimisationSettings:
-        """Return the paper's form: undamped, one sweep, no predictor, right angles."""
-        return AngleOptimisationSettings(sweeps=1, iterations=5, damping=0.0, predictor=False, ideal="right")
-
-
-MoverSettings: TypeAlias = PseudoSolidSettings | AngleOptimisationSettings
 
 
 @dataclass(frozen=True)

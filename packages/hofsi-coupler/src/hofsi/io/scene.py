@@ -13,8 +13,9 @@ from hofsi.case import Case
 from hofsi.case_checks import check_case
 from hofsi.errors import CaseError
 from hofsi.io.materials import read_fluid, read_motion, read_solid
+from hofsi.io.movers import read_mover
 from hofsi.io.quantities import read_quantity
-from hofsi.io.settings import read_coupling, read_linear, read_mover, read_nonlinear, read_output, read_time
+from hofsi.io.settings import read_coupling, read_linear, read_nonlinear, read_output, read_time
 
 __all__ = ["load_case", "read_case"]
 
@@ -138,7 +139,7 @@ def _case(whole: Table, data: Mapping[str, Any], file: str) -> Case:
         solids=tuple(read_solid(table, mesh, constants) for table in whole.tables("solid")),
         time=time,
         motions=tuple(read_motion(table, mesh, constants) for table in whole.tables("motion")),
-        mover=read_mover(whole.table("mover", required=False)),
+        mover=read_mover(whole.table("mover", required=False), mesh, constants),
         coupling=read_coupling(whole.table("coupling", required=False), time),
         nonlinear=read_nonlinear(whole.table("nonlinear", required=False)),
         linear=read_linear(whole.table("linear", required=False)),

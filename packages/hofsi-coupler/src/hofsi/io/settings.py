@@ -1,4 +1,4 @@
-"""Settings of a scene: ``[mover]``, ``[time]``, ``[coupling]``, ``[nonlinear]``, ``[linear]``, ``[output]``."""
+"""Settings of a scene: ``[time]``, ``[coupling]``, ``[nonlinear]``, ``[linear]``, ``[output]``."""
 
 from __future__ import annotations
 
@@ -7,13 +7,10 @@ from collections.abc import Iterable
 
 from hoblock.io.table import Table
 from hofsi.case import (
-    AngleOptimisationSettings,
     CouplingSettings,
     LinearSettings,
-    MoverSettings,
     NonlinearSettings,
     OutputSettings,
-    PseudoSolidSettings,
     Steady,
     TimeSettings,
     Unsteady,
@@ -21,54 +18,10 @@ from hofsi.case import (
 from hofsi.errors import CaseError
 from hofsi.io.names import check_name, choice
 
-__all__ = ["read_coupling", "read_linear", "read_mover", "read_nonlinear", "read_output", "read_time"]
+__all__ = ["read_coupling", "read_linear", "read_nonlinear", "read_output", "read_time"]
 
 _WHOLE = 1e-6
 """How far (end - start)/dt may be from a whole number, in steps."""
-
-
-def read_mover(table: Table) -> MoverSettings:
-    """Read ``[mover]``.
-
-    Raises
-    ------
-    SceneError
-        An unknown key, a value of the wrong type or out of range; so do all readers of this module.
-    """
-    kind = choice(table, "type", ("pseudo-solid", "angle-optimisation"), "pseudo-solid")
-    settings = _pseudo_solid(table) if kind == "pseudo-solid" else _angle_optimisation(table)
-    table.finish()
-    return settings
-
-
-def _pseudo_solid(table: Table) -> PseudoSolidSettings:
-    default = PseudoSolidSettings()
-    return PseudoSolidSettings(
-        exponent=table.number("exponent", default.exponent),
-        poissons_ratio=table.number("poissons_ratio", default.poissons_ratio, above=-1.0, below=0.5),
-    )
-
-
-def _angle_optimisation(table: Table) -> AngleOptimisationSettings:
-    form = choice(table, "form", ("robust", "published"), "robust")
-    default = AngleOptimisationSettings.as_published() if form == "published" else AngleOptimisationSettings()
-    power = table.integer("power", default.power, minimum=2)
-    if power % 2:
-        raise CaseError(f"got {power}; expected an even number, as 2 or 4", table.place_of("power"))
-    lower = table.number("lower", default.lower, above=0.0, below=1.0)
-    return AngleOptimisationSettings(
-        power=power,
-        sweeps=table.integer("sweeps", default.sweeps, minimum=1),
-        iterations=table.integer("iterations", default.iterations, minimum=1),
-        lower=lower,
-        upper=table.number("upper", default.upper, above=1.0),
-        penalty=table.number("penalty", default.penalty, minimum=0.0),
-        radius=table.number("radius", default.radius, positive=True),
-        projection=choice(table, "projection", ("every", "end"), default.projection),
-        damping=table.number("damping", default.damping, minimum=0.0),
-        predictor=table.boolean("predictor", default.predictor),
-        ideal=choice(table, "ideal", ("reference", "right"), default.ideal),
-    )
 
 
 def read_time(table: Table) -> TimeSettings:
