@@ -11,6 +11,7 @@ import pytest
 
 from hoblock.blocks import BlockStructure
 from hoblock.curves import NodalCurve
+from hoblock.errors import MoverError
 from hoblock.generate import generate, regenerate
 from hoblock.grading import Exponential
 from hoblock.layout import layout
@@ -61,7 +62,10 @@ class Run:
         """Last s with a valid mesh when s rises in equal steps."""
         last = 0.0
         for s in np.linspace(0.0, end, steps + 1)[1:]:
-            self.to(s)
+            try:
+                self.to(s)
+            except MoverError:
+                break
             if not self.valid_at(s):
                 break
             last = float(s)

@@ -300,8 +300,8 @@ class BarrierEnergy:
         vertex = roles.names[corners.vertices[k, 0]]
         return (
             f"barrier: found no valid place for the {len(roles.movable)} vertices: {state}, the worst at vertex "
-            f"'{vertex}' of {block}, {angle:.3g}°. Check that the driven edges cross neither each other nor the boundary; "
-            "else move in smaller steps, let vertices slide, or use more blocks around the body."
+            f"'{vertex}' of {block}, {angle:.3g}°. Check that the driven edges cross neither each other nor a wall;"
+            " else move in smaller steps, let vertices slide, or use more blocks around the body."
         )
 
     def _driven_edges(self, roles: VertexRoles) -> tuple[Index, Array]:

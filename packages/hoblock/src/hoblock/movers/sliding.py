@@ -141,9 +141,7 @@ class Sliding:
                     )
                 ]
                 if path.closed:  # the coordinate of a vertex is known but for the length of the whole path
-                    middle = 0.5 * float(path.starts[place] + path.starts[place + 1])
-                    ends[0] += path.length * round((middle - 0.5 * part.length - ends[0]) / path.length)
-                    ends[1] += path.length * round((middle + 0.5 * part.length - ends[1]) / path.length)
+                    ends[1] = ends[0] + (ends[1] - ends[0]) % path.length
                 result[part.edge] = path.part(place, *ends)
         return result
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,10 @@ __all__ = ["PathEdge", "PathPart", "SlidingPath"]
 
 _DIFFERENCE = 2e-3
 """Half width of difference formulas of order four, as a fraction of the shortest edge: errors of about 1e-11."""
+_FEWEST, _MOST = 32, 2048
+"""Numbers of pieces of a spline that stands for an edge."""
+_SAME = 1e-13
+"""Distance of the spline from the curve, relative to its length."""
 _SAMPLES = 32
 """Samples of each edge from which the coordinate of a place is sought."""
 
@@ -51,8 +56,26 @@ class PathEdge:
         """Arc length."""
         return float(np.hypot(*(self.ends[1] - self.ends[0]))) if self._table is None else self._table.length
 
+    @cached_property
+    def _spline(self) -> Any:
+        """Points by arc length, to round-off, as splines of degree seven; None if the curve is not smooth."""
+        from scipy.interpolate import make_interp_spline
+
+        count = _FEWEST
+        while count <= _MOST:
+            s = np.linspace(0.0, self.length, count + 1)
+            spline = make_interp_spline(s, self._exact(s), k=7)
+            between = s[:-1] + 0.37 * self.length / count
+            if np.abs(spline(between) - self._exact(between)).max() <= _SAME * self.length:
+                return spline
+            count *= 2
+        return None
+
     def points(self, lengths: Array) -> Array:
         """Points at arc lengths from where the path enters the edge."""
+        return self._exact(lengths) if self._table is None or self._spline is None else self._spline(lengths)
+
+    def _exact(self, lengths: Array) -> Array:
         from_first = lengths if self.forward else self.length - lengths
         if self._table is None or self.curve is None:
             t = (from_first / self.length)[:, None]
