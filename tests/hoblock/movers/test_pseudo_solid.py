@@ -211,3 +211,38 @@ def test_positions_that_do_not_fit_are_named():
         solid.move(structure.vertices, np.zeros((3, 2)))
     with pytest.raises(MoverError, match=r"positions\[1\], vertex '5', is \[nan, 0.0\]; expected finite"):
         solid.move(structure.vertices, np.array([[0.0, 0.0], [np.nan, 0.0]]))
+
+
+def test_an_incremental_solid_turns_further(rig, plate_in_box):
+    reach = [
+        rig(plate_in_box, PseudoSolid(plate_in_box.structure, plate_in_box.driven, incremental=flag), "rotation").reach(
+            180.0
+        )
+        for flag in (False, True)
+    ]
+    assert reach[1] > reach[0] >= 48.0
+
+
+def test_an_incremental_solid_drifts(rig, wall_ramm):
+    once = PseudoSolid(wall_ramm.structure, wall_ramm.driven)
+    steps = PseudoSolid(wall_ramm.structure, wall_ramm.driven, incremental=True)
+    assert steps.depends_on_state
+    assert not once.depends_on_state
+    gaps = []
+    for mover in (once, steps):
+        run = rig(wall_ramm, mover, "cantilever")
+        for s in 0.16 * np.sin(np.linspace(0.0, 2.0 * np.pi, 25)[1:]):
+            run.to(s)
+        gaps.append(np.abs(run.vertices - wall_ramm.structure.vertices).max())
+    assert gaps[0] < 1e-14
+    assert gaps[1] > 1e-6
+
+
+def test_a_small_increment_is_that_of_the_reference(wall_ramm):
+    start, driven = wall_ramm.structure.vertices, wall_ramm.driven
+    shift = 1e-5 * np.random.default_rng(5).standard_normal((len(driven), 2))
+    once, steps = (
+        PseudoSolid(wall_ramm.structure, driven, incremental=flag).move(start, start[driven] + shift)
+        for flag in (False, True)
+    )
+    np.testing.assert_allclose(once, steps, atol=1e-15)

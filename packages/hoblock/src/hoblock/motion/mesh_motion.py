@@ -102,6 +102,7 @@ class MeshMotion:
             raise MoverError(f"motion: halvings is {halvings!r}; expected an integer >= 0.")
         self._mover, self._halvings = mover, halvings
         self._end_rows = driven.end_rows(mover.tangent_edges)
+        self._ends = np.array([rows[[0, -1]] for rows in driven.rows], dtype=np.int64).reshape(-1, 2)
         self._size = float(np.abs(structure.vertices).max())
         mesh = generate(structure, order) if mesh is None else mesh
         self._plan = layout(structure, order)
@@ -296,6 +297,14 @@ class MeshMotion:
             raise MoverError(
                 f"move: positions[{k}], the node of the driven edge {self.driven.topology.edge_name(edge)} that was at "
                 f"({x:.6g}, {y:.6g}), is {positions[k].tolist()}; expected finite coordinates. Check what drives it."
+            )
+        chords = positions[self._ends[:, 1]] - positions[self._ends[:, 0]]
+        if not chords.any(axis=1).all():
+            k = int(np.argmin(chords.any(axis=1)))
+            x, y = positions[self._ends[k, 0]]
+            raise MoverError(
+                f"move: the driven edge {self.driven.topology.edge_name(self.driven.edges[k])} has no length: both ends "
+                f"are at ({x:.6g}, {y:.6g}); expected two places. Check what drives it."
             )
         positions.setflags(write=False)
         return positions
