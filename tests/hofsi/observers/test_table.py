@@ -58,10 +58,11 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         counts["fluid"].factorisations += 2
         counts["solid"].factorisations += 1
         counts["solid"].assemblies += 1
-        mesh: Any = SimpleNamespace(regenerated=7)
+        mesh: Any = SimpleNamespace(regenerated=7, substeps=2, amplification=6.25, snapped=True)
         table.observe(record(step, state=State(mesh=mesh), coupling=CouplingRecord(4, 1e-7, 2e-8), min_det_J=0.25))
     table.close()
     assert (table.steps, table.coupling_iterations, table.blocks_regenerated) == (2, 8, 14)
+    assert table.mesh_jumps == 2
     written = lines(tmp_path / "steps.csv")
     assert tuple(written[0]) == STEP_COLUMNS
     assert written[1] == {
@@ -73,6 +74,8 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         "force_residual": "2e-08",
         "min_det_J": "0.25",
         "blocks_regenerated": "7",
+        "mesh_substeps": "2",
+        "mesh_amplification": "6.25",
         "factorisations": "6",
         "assemblies": "2",
         "seconds": "2.25",
@@ -85,13 +88,13 @@ def test_what_a_problem_does_not_have_stays_empty(tmp_path: Path) -> None:
     table.close()
     (written,) = lines(tmp_path / "steps.csv")
     empty = [name for name, cell in written.items() if not cell]
-    assert empty == list(STEP_COLUMNS[3:8])
+    assert empty == list(STEP_COLUMNS[3:10])
     assert (table.coupling_iterations, table.blocks_regenerated) == (0, 0)
 
 
 def test_blocks_of_a_mesh_that_stays_are_counted_once(tmp_path: Path) -> None:
     table = StepTable(tmp_path / "steps.csv", {})
-    mesh: Any = SimpleNamespace(regenerated=3)
+    mesh: Any = SimpleNamespace(regenerated=3, substeps=1, amplification=1.5, snapped=False)
     for step in (1, 2, 3):
         table.observe(record(step, state=State(mesh=mesh)))
     table.close()

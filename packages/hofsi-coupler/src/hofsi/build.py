@@ -36,11 +36,12 @@ _SAME_PLACE = 1e-9  # of the mesh's extent: motions that differ by more where th
 
 @dataclass(frozen=True, eq=False)
 class FluidPart:
-    """The fluid's share of the mesh, and its solver."""
+    """The fluid's share of the mesh, its solver, and its motion if it moves."""
 
     structure: BlockStructure
     mesh: QuadMesh
     solver: FluidSolver
+    motion: MeshMotion | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +144,7 @@ def _fluid_alone(asked: case.Case, structure: BlockStructure, mesh: QuadMesh, cl
     nobody = np.zeros(0, dtype=np.int64)
     solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, nobody, moving)
     march = FluidMarch(solver, reference, motion, displacement, clock)
-    return Problem(asked, march, FluidPart(structure, mesh, solver), None, None, clock)
+    return Problem(asked, march, FluidPart(structure, mesh, solver, motion), None, None, clock)
 
 
 def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: BlockStructure, clock: Clock) -> Problem:
@@ -164,7 +165,7 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     march = CoupledMarch(
         fluid_solver, solid_solver, interface, motion, prescribed, asked.coupling, _accelerator(asked.coupling), clock
     )
-    parts = FluidPart(fluid, mesh, fluid_solver), SolidPart(solid, solid_mesh, solid_solver)
+    parts = FluidPart(fluid, mesh, fluid_solver, motion), SolidPart(solid, solid_mesh, solid_solver)
     return Problem(asked, march, *parts, interface, clock)
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hoblock import BlockStructure, QuadMesh
 from hoblock.motion import DrivenEdges
-from hoblock.movers import Mover, sliding_vertices
+from hoblock.movers import Mover, Rule, sliding_vertices
 from hofsi.case import (
     AngleOptimisationSettings,
     BarrierSettings,
@@ -23,7 +23,7 @@ from hofsi.errors import CaseError
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["make_mover"]
+__all__ = ["make_mover", "placed_vertices"]
 
 
 def make_mover(settings: MoverSettings, structure: BlockStructure, mesh: QuadMesh, driven: DrivenEdges) -> Mover:
@@ -45,7 +45,7 @@ def make_mover(settings: MoverSettings, structure: BlockStructure, mesh: QuadMes
     MoverError
         If the blocks do not suit the mover.
     """
-    sliding = _sliding(settings, structure, driven)
+    free, sliding = placed_vertices(settings, structure, driven)
     match settings:
         case BarrierSettings():
             from hoblock.movers import BarrierEnergy
@@ -74,13 +74,27 @@ def make_mover(settings: MoverSettings, structure: BlockStructure, mesh: QuadMes
                 incremental=settings.incremental,
             )
         case RuleSettings():
-            from hoblock.movers import Rule
-
-            free = Rule(structure, driven.vertices, lambda displacement: displacement, sliding=sliding).free
             function = _rule(settings, structure, driven.vertices, np.concatenate([free, sliding]))
             return Rule(structure, driven.vertices, function, sliding=sliding)
         case AngleOptimisationSettings():
             return _angle_optimisation(settings, structure, driven.vertices, sliding)
+
+
+def placed_vertices(settings: MoverSettings, structure: BlockStructure, driven: DrivenEdges) -> tuple[Index, Index]:
+    """Vertices inside and on the boundary that a mover places, ascending; a rule is checked, too.
+
+    Raises
+    ------
+    CaseError
+        As `make_mover`.
+    """
+    names = structure.topology.edge_groups
+    edges = [int(edge) for name in _sides(settings, structure, driven) for edge in names[name]]
+    slides = sliding_vertices(structure, edges, driven.vertices)
+    placed = Rule(structure, driven.vertices, np.zeros_like, sliding=slides)
+    if isinstance(settings, RuleSettings):
+        _rule(settings, structure, driven.vertices, np.concatenate([placed.free, placed.paths.vertices]))
+    return placed.free, placed.paths.vertices
 
 
 def _angle_optimisation(
@@ -106,8 +120,8 @@ def _angle_optimisation(
     )
 
 
-def _sliding(settings: MotionSettings, structure: BlockStructure, driven: DrivenEdges) -> Index:
-    """Vertices that slide along the named sides."""
+def _sides(settings: MotionSettings, structure: BlockStructure, driven: DrivenEdges) -> tuple[str, ...]:
+    """Names of the sides along which vertices slide, checked."""
     groups = structure.topology.edge_groups
     for name in settings.sliding:
         outer = name in groups and (structure.topology.blocks_per_edge[groups[name]] == 1).all()
@@ -117,8 +131,7 @@ def _sliding(settings: MotionSettings, structure: BlockStructure, driven: Driven
                 "move, along which block vertices can slide",
                 "mover.sliding",
             )
-    edges = [int(edge) for name in settings.sliding for edge in groups[name]]
-    return sliding_vertices(structure, edges, driven.vertices)
+    return settings.sliding
 
 
 def _rule(settings: RuleSettings, structure: BlockStructure, driven: Index, placed: Index) -> Callable[[Array], Array]:

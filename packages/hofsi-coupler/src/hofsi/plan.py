@@ -6,12 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
 from hoblock.building import build_structure
 from hoblock.errors import HoblockError
 from hoblock.generate import generate
 from hoblock.mesh import QuadMesh
+from hoblock.motion import driven_edges
 from hoblock.numbering import number_nodes
 from hoblock.quality import scaled_jacobian
 from hofsi.case import (
@@ -27,6 +29,9 @@ from hofsi.case import (
 )
 from hofsi.case_checks import check_case
 from hofsi.errors import CaseError
+from hofsi.movers import placed_vertices
+
+Index = NDArray[np.int64]
 
 __all__ = ["Item", "Plan", "plan"]
 
@@ -87,7 +92,7 @@ class _Meshes:
     fluid: tuple[BlockStructure, QuadMesh] | None
     solid: tuple[BlockStructure, QuadMesh] | None
     wet: tuple[int, int]
-    driven: int
+    driven: Index
 
 
 def plan(case: Case) -> Plan:
@@ -149,14 +154,17 @@ def _meshes(case: Case) -> _Meshes:
     groups = [name for solid in case.solids for name in solid.blocks]
     solid = _part(structure, groups, case.mesh.order) if groups else None
     if case.fluid is None:
-        return _Meshes(None, solid, (0, 0), 0)
+        return _Meshes(None, solid, (0, 0), np.zeros(0, dtype=np.int64))
     fluid = _part(structure, case.fluid.blocks, case.mesh.order)
     wet = structure.shared_edges(case.fluid.blocks, groups) if groups else np.zeros(0, dtype=np.int64)
-    named = structure.topology.edge_groups
-    driven = np.unique(np.concatenate([wet, *(named[name] for motion in case.motions for name in motion.on)]))
     ends = structure.topology.edges
     nodes = len(np.unique(ends[wet])) + int((structure.topology.counts[wet] * case.mesh.order - 1).sum())
-    return _Meshes(fluid, solid, (len(wet), nodes), len(np.unique(ends[driven])))
+    names = structure.topology.vertex_names
+    topology = fluid[0].topology
+    coupled = [topology.edge(*(topology.vertex(names[v]) for v in ends[edge]))[0] for edge in wet]
+    named = topology.edge_groups
+    moving = [int(edge) for motion in case.motions for name in motion.on for edge in named[name]]
+    return _Meshes(fluid, solid, (len(wet), nodes), np.unique(np.array([*coupled, *moving], dtype=np.int64)))
 
 
 def _part(structure: BlockStructure, groups: Sequence[str], order: int) -> tuple[BlockStructure, QuadMesh]:
@@ -233,13 +241,24 @@ def _material(solid: Solid, fluid: Fluid | None) -> str:
     )
 
 
+def _mover(case: Case, structure: BlockStructure, mesh: QuadMesh, edges: Index) -> str:
+    """What the mover places."""
+    driven = driven_edges(structure, mesh.order, edges)
+    inside, sliding = placed_vertices(case.mover, structure, driven)
+    kind = _MOVERS[type(case.mover)]
+    if not inside.size and not sliding.size:
+        return (
+            f"{kind}: 0 free block vertices follow {len(driven.vertices)} driven ones; between the moving edges and "
+            "the boundary the mesh is one block thick and can only be stretched. Add a ring of blocks if that fails"
+        )
+    free = "1 free block vertex follows" if len(inside) == 1 else f"{len(inside)} free block vertices follow"
+    slides = f", {len(sliding)} slide along the boundary" if sliding.size else ""
+    return f"{kind}: {free} {len(driven.vertices)} driven ones{slides}"
+
+
 def _coupling(case: Case, meshes: _Meshes) -> Iterator[Item]:
     if _moves(case) and meshes.fluid is not None:
-        structure = meshes.fluid[0]
-        moved = np.setdiff1d(np.arange(len(structure.vertices)), structure.topology.boundary_vertices)
-        kind = _MOVERS[type(case.mover)]
-        vertices = "1 free block vertex follows" if len(moved) == 1 else f"{len(moved)} free block vertices follow"
-        yield Item("mover", f"{kind}: {vertices} {meshes.driven} driven ones")
+        yield Item("mover", _mover(case, *meshes.fluid, meshes.driven))
     if not _coupled(case):
         return
     settings = case.coupling

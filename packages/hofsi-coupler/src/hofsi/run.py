@@ -243,11 +243,13 @@ class _Report:
             "assemblies": sum(count.assemblies for count in problem.counts.values()),
             "factorisations": sum(count.factorisations for count in problem.counts.values()),
             "blocks_regenerated": steps.blocks_regenerated,
+            "mesh_jumps": steps.mesh_jumps,
         }
         if problem.fluid is not None:
             fluid = problem.fluid
             size = {"elements": len(fluid.mesh.cells), "unknowns": fluid.solver.space.size}
-            counts["fluid"] = {**size, **asdict(fluid.solver.counts)}
+            moving = {} if fluid.motion is None else {f"moving_{name}": n for name, n in fluid.motion.moving.items()}
+            counts["fluid"] = {**size, **moving, **asdict(fluid.solver.counts)}
         if problem.solid is not None:
             solid = problem.solid
             size = {"elements": len(solid.mesh.cells), "unknowns": 2 * len(solid.mesh.points)}

@@ -52,7 +52,7 @@ def boundary_crossing(structure: BlockStructure, order: int) -> BoundaryCrossing
         Order of the elements whose nodes are the polygons' corners.
     """
     try:
-        starts, ends, edges = _segments(structure, order)
+        starts, ends, nodes, edges = _segments(structure, order)
     except HoblockError:
         return None
     step = max(1, _AT_ONCE // max(1, len(starts)))
@@ -60,6 +60,7 @@ def boundary_crossing(structure: BlockStructure, order: int) -> BoundaryCrossing
         some = np.arange(k, min(k + step, len(starts)))
         hit = _crossing(starts[some, None], ends[some, None], starts[None], ends[None])
         hit &= some[:, None] < np.arange(len(starts))
+        hit &= ~(nodes[some, None, :, None] == nodes[None, :, None, :]).any(axis=(2, 3))  # neighbours touch
         if hit.any():
             i, j = np.argwhere(hit)[0]
             a, b = int(some[i]), int(j)
@@ -69,24 +70,28 @@ def boundary_crossing(structure: BlockStructure, order: int) -> BoundaryCrossing
     return None
 
 
-def _segments(structure: BlockStructure, order: int) -> tuple[Array, Array, Index]:
-    """Starts, ends and edges of the boundary's straight pieces."""
+def _segments(structure: BlockStructure, order: int) -> tuple[Array, Array, Index, Index]:
+    """Starts, ends, nodes (k, 2) and edges of the boundary's straight pieces."""
     plan = layout(structure, order)
-    starts, ends, numbers = [], [], []
+    starts, ends, nodes, numbers = [], [], [], []
     for edge in np.flatnonzero(structure.topology.blocks_per_edge == 1).tolist():
         points = structure.edge_points(edge, plan.parameters_of_edge(edge))
         starts.append(points[:-1])
         ends.append(points[1:])
+        along = plan.nodes_of_edge(edge)
+        nodes.append(np.stack([along[:-1], along[1:]], axis=-1))
         numbers.append(np.full(len(points) - 1, edge))
-    return np.concatenate(starts), np.concatenate(ends), np.concatenate(numbers)
+    return np.concatenate(starts), np.concatenate(ends), np.concatenate(nodes), np.concatenate(numbers)
 
 
 def _crossing(a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
-    """Whether the inner parts of the segments ab and cd cross."""
+    """Whether the segments ab and cd cross or touch, other than along a common line."""
 
     def side(p: Array, q: Array, r: Array) -> Array:
         a, b = q - p, r - p
         return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
-    first, second = side(a, b, c) * side(a, b, d), side(c, d, a) * side(c, d, b)
-    return np.asarray((first < 0.0) & (second < 0.0))
+    c_side, d_side, a_side, b_side = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
+    apart = (c_side * d_side > 0.0) | (a_side * b_side > 0.0)
+    parallel = (c_side == 0.0) & (d_side == 0.0)
+    return np.asarray(~apart & ~parallel)

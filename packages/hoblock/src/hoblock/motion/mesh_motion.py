@@ -302,9 +302,10 @@ class MeshMotion:
         if not chords.any(axis=1).all():
             k = int(np.argmin(chords.any(axis=1)))
             x, y = positions[self._ends[k, 0]]
+            name = self.driven.topology.edge_name(self.driven.edges[k])
             raise MoverError(
-                f"move: the driven edge {self.driven.topology.edge_name(self.driven.edges[k])} has no length: both ends "
-                f"are at ({x:.6g}, {y:.6g}); expected two places. Check what drives it."
+                f"move: the driven edge {name} has no length: both ends are at ({x:.6g}, {y:.6g}); expected two "
+                "places. Check what drives it."
             )
         positions.setflags(write=False)
         return positions

@@ -85,6 +85,8 @@ class Progress:
             parts += [f"{record.coupling.iterations} iterations", f"residual {residual:.1e}"]
         if record.min_det_J is not None:
             parts.append(f"min det J {record.min_det_J:.2e}")
+        if record.state.mesh is not None and record.state.mesh.snapped:
+            parts.append(f"mesh jumped? (vertices move {record.state.mesh.amplification:.2g} times as far as the body)")
         if record.dt > 0.0 and self._steps is not None and self._duration is not None:
             parts.append(f"{_span(self._duration * max(self._steps - record.step, 0))} left")
         return "  ".join(parts)

@@ -26,6 +26,8 @@ STEP_COLUMNS = (
     "force_residual",
     "min_det_J",
     "blocks_regenerated",
+    "mesh_substeps",
+    "mesh_amplification",
     "factorisations",
     "assemblies",
     "seconds",
@@ -112,6 +114,8 @@ class StepTable:
         So far.
     blocks_regenerated : int
         Blocks whose mesh was generated anew, summed over the meshes of the finished steps.
+    mesh_jumps : int
+        Steps in which the mesh probably jumped: see `hoblock.motion.MeshState.snapped`.
     """
 
     def __init__(
@@ -121,12 +125,15 @@ class StepTable:
         self._opened = clock()
         self._mesh: object = None
         self._lines = _Lines(path, STEP_COLUMNS)
-        self.steps = self.coupling_iterations = self.blocks_regenerated = 0
+        self.steps = self.coupling_iterations = self.blocks_regenerated = self.mesh_jumps = 0
 
     def observe(self, record: StepRecord) -> None:
         """Write the line of a step."""
         coupling, mesh = record.coupling, record.state.mesh
-        blocks = None if mesh is None else mesh.regenerated if mesh is not self._mesh else 0
+        moved = mesh is not None and mesh is not self._mesh
+        blocks = None if mesh is None else mesh.regenerated if moved else 0
+        motion = (mesh.substeps, float(f"{mesh.amplification:.4g}")) if mesh is not None and moved else (None, None)
+        self.mesh_jumps += mesh is not None and moved and mesh.snapped
         self._mesh = mesh
         self.steps += 1
         self.coupling_iterations += 0 if coupling is None else coupling.iterations
@@ -143,6 +150,7 @@ class StepTable:
                 ),
                 record.min_det_J,
                 blocks,
+                *motion,
                 sum(count.factorisations for count in self._counts.values()),
                 sum(count.assemblies for count in self._counts.values()),
                 round(self._clock() - self._opened, 4),
