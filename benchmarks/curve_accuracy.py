@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from _result import Result, parser, report
 
+from _result import Result, parser, report
 from hoblock import BlockStructure, generate
 from hoblock.curves import (
     Arc,

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from time import perf_counter
 
 from _result import ROOT, Result, parser, report
-
 from hofsi import build, evaluators, load_case, simulate
 
 REFERENCE = {"c_D": 5.57953523384, "c_L": 0.010618948146, "dp": 0.11752016697}

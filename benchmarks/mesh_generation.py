@@ -7,8 +7,8 @@ from itertools import product
 from time import perf_counter
 
 import numpy as np
-from _result import Result, fastest, parser, report
 
+from _result import Result, fastest, parser, report
 from hoblock import BlockStructure, Exponential, generate, regenerate
 from hoblock.generate import raise_if_invalid
 

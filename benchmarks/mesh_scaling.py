@@ -8,8 +8,8 @@ from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
-from _result import ROOT, Result, fastest, parser, report
 
+from _result import ROOT, Result, fastest, parser, report
 from hoblock import BlockStructure, Exponential, Uniform, build_structure, generate, regenerate
 from hoblock.curves import NodalCurve
 from hoblock.io.scene import load_mesh_scene

@@ -20,7 +20,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from _result import Result, parser, report
-
 from hoblock import Arc, BlockStructure, Exponential, QuadMesh, generate, scaled_jacobian
 from hoblock.io.mesh_file import read_mesh, write_mesh
 from hoblock.quality import certify

@@ -18,10 +18,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from _result import Result, fastest, parser, report
-from mesh_scaling import channel
-
 from hoblock import Arc, BlockStructure, generate
 from hoblock.curves import Reversed
+from mesh_scaling import channel
 
 
 def build_in_gmsh(structure: BlockStructure) -> None:

@@ -325,7 +325,7 @@ def test_irregular_vertices_keep_the_angles_of_the_reference():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"power": 3}, "power is 3; expected an even integer"),
+        ({"power": 3}, "power is 3; expected 1 or an even integer"),
         ({"power": 0}, "power is 0"),
         ({"sweeps": 0}, "sweeps is 0"),
         ({"iterations": 0}, "iterations is 0"),

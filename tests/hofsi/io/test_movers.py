@@ -73,7 +73,7 @@ RULE = {"names": "m1", "x": 0, "y": 0}
         ({"sliding": ["walls"]}, r"mover.sliding: got the unknown name 'walls'. Did you mean 'wall'"),
         ({"inherit": "some"}, r"mover.inherit: got 'some'"),
         ({"halvings": -1}, r"mover.halvings: got -1"),
-        ({"type": "angle-optimisation", "power": 3}, r"mover.power: got 3; expected an even number"),
+        ({"type": "angle-optimisation", "power": 3}, r"mover.power: got 3; expected 1 or an even number"),
         ({"type": "angle-optimisation", "exponent": 3}, r"mover.exponent: unknown key"),
         ({"type": "angle-optimisation", "lower": 1.0}, r"mover.lower: got 1.0; .* below 1"),
         ({"type": "angle-optimisation", "upper": 0.5}, r"mover.upper: got 0.5; .* above 1"),

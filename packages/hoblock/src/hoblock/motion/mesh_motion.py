@@ -168,6 +168,10 @@ class MeshMotion:
         amplification = self._amplification(current, state.vertices, positions)
         return replace(state, regenerated=blocks, substeps=parts, amplification=amplification)
 
+    def certified_part(self, mesh: QuadMesh) -> QuadMesh:
+        """Return the elements of a mesh of this motion that can move: those that every motion certifies anew."""
+        return self._part.with_points(mesh.points)
+
     def _moved(self, current: MeshState, positions: Array) -> MeshState:
         """Move in one step."""
         driven, reference, mover = self.driven, self.reference, self._mover
@@ -182,7 +186,7 @@ class MeshMotion:
             mesh = reference.mesh.with_points(points)
         else:
             mesh = regenerate(reference.mesh, structure(), previous=reference.structure)
-        part = self._part.with_points(mesh.points)
+        part = self.certified_part(mesh)
         lower = float(det_jacobian_bounds(part)[0].min(initial=np.inf))
         if not lower > 0.0:
             certificate = certify(part)

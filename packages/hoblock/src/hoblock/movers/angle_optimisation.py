@@ -60,7 +60,9 @@ class AngleOptimisation:
     driven : ndarray of int
         Vertices whose positions are prescribed, ascending, on the boundary or inside. Other boundary vertices stay.
     power : int
-        Even exponent n of the angle errors.
+        Exponent n of the angle errors: even, as the paper asks, or 1. With n >= 2 the squares of the errors are squared
+        once more: the Hessian vanishes where the angles are good, and the vertices jerk however short the steps; 1
+        moves them more smoothly.
     sweeps : int
         Gauss–Seidel sweeps over the free vertices in a move. Vertices without a common block are placed together.
     iterations : int
@@ -264,7 +266,7 @@ class AngleOptimisation:
         """Raise for a parameter that is out of range."""
         upper = np.inf if self.upper is None else self.upper
         checks: tuple[tuple[str, object, bool, str], ...] = (
-            ("power", self.power, self.power >= 2 and self.power % 2 == 0, "an even integer >= 2"),
+            ("power", self.power, self.power == 1 or (self.power >= 2 and self.power % 2 == 0), "1 or an even integer"),
             ("sweeps", self.sweeps, self.sweeps >= 1, "an integer >= 1"),
             ("iterations", self.iterations, self.iterations >= 1, "an integer >= 1"),
             ("lower", self.lower, 0.0 < self.lower <= 1.0, "a fraction of the reference length in (0, 1]"),

@@ -83,7 +83,7 @@ class AngleOptimisationSettings(MotionSettings):
     Attributes
     ----------
     power : int
-        Even; of the angles' errors.
+        1 or even; of the angles' errors.
     sweeps : int
         Over all vertices, a step.
     iterations : int

@@ -85,9 +85,9 @@ def _pseudo_solid(table: Table, common: Mapping[str, Any]) -> PseudoSolidSetting
 def _angle_optimisation(table: Table, common: Mapping[str, Any]) -> AngleOptimisationSettings:
     form = choice(table, "form", ("robust", "published"), "robust")
     default = AngleOptimisationSettings.as_published() if form == "published" else AngleOptimisationSettings()
-    power = table.integer("power", default.power, minimum=2)
-    if power % 2:
-        raise CaseError(f"got {power}; expected an even number, as 2 or 4", table.place_of("power"))
+    power = table.integer("power", default.power, minimum=1)
+    if power > 1 and power % 2:
+        raise CaseError(f"got {power}; expected 1 or an even number", table.place_of("power"))
     lower = table.number("lower", default.lower, above=0.0, below=1.0)
     return AngleOptimisationSettings(
         power=power,
