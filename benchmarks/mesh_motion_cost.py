@@ -31,6 +31,7 @@ BLOCKS: dict[str, Callable[[MotionCase], Mover]] = {
 FULL: dict[str, Callable[..., FullMeshMover]] = {
     "full-mesh pseudo-solid, refactored": lambda *a: Elastic(*a, cached=False),
     "full-mesh pseudo-solid, cached factor": Elastic,
+    "full-mesh pseudo-solid, incremental": lambda *a: Elastic(*a, exponent=-1.5, incremental=True),
     "full-mesh Laplace, cached factor": Laplace,
     "full-mesh biharmonic, cached factor": Biharmonic,
     "full-mesh biharmonic, incremental": lambda *a: Biharmonic(*a, incremental=True),
@@ -39,8 +40,6 @@ FULL: dict[str, Callable[..., FullMeshMover]] = {
     "full-mesh IDW, cached weights": InverseDistance,
     "full-mesh neo-Hooke": NeoHooke,
 }
-_DENSE_LIMIT = 20_000
-"""Nodes up to which methods are timed whose matrices are dense or whose equations are nonlinear, unless asked."""
 
 
 def block_rows(case: MotionCase, order: int, repeats: int) -> list[dict[str, object]]:
@@ -98,7 +97,6 @@ def main(argv: Sequence[str] | None = None) -> Result:
     )
     options.add_argument("--order", type=int, default=4)
     options.add_argument("--repeats", type=int, default=30)
-    options.add_argument("--everything", action="store_true", help="also dense and nonlinear methods on large meshes")
     given = options.parse_args(argv)
     rows: list[dict[str, object]] = []
     for elements in given.elements:
@@ -106,11 +104,7 @@ def main(argv: Sequence[str] | None = None) -> Result:
         mesh = generate(case.structure, given.order)
         some = block_rows(case, given.order, given.repeats)
         for name, make in FULL.items():
-            heavy = any(word in name for word in ("RBF", "neo-Hooke", "incremental", "IDW"))
-            if heavy and len(mesh.points) > _DENSE_LIMIT and not given.everything:
-                continue
             some.append(full_row(name, make, case, mesh, max(1, min(given.repeats, 3 if elements > 4 else 5))))
-            print(some[-1], flush=True)
         barrier = some[0]
         for row in some:
             for key in ("all ms", "move and regenerate ms"):
