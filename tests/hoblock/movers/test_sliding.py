@@ -193,3 +193,22 @@ def test_vertices_that_cannot_slide(sliding, match):
     for make in (BarrierEnergy, PseudoSolid, AngleOptimisation):
         with pytest.raises(MoverError, match=match):
             make(structure, np.array([6, 7, 11, 12]), sliding=np.array(sliding))
+
+
+def test_a_path_follows_where_its_end_is_driven_away():
+    """Half a ring: one end of its outer arc is driven, the inner vertices slide; the last edge meets the moved end."""
+    angle = np.pi * np.arange(5) / 4.0
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    vertices = np.concatenate([circle, 2.0 * circle])
+    blocks = [(k, k + 5, k + 6, k + 1) for k in range(4)]
+    curves = {(str(k), str(k + 1)): Arc.from_center((0.0, 0.0), vertices[k], vertices[k + 1]) for k in range(5, 9)}
+    named = {str(k): tuple(x) for k, x in enumerate(vertices)}
+    structure = BlockStructure.build(named, [tuple(map(str, b)) for b in blocks], counts=2, curves=curves)
+    driven = np.array([0, 5])
+    edge = structure.topology.find_edge(0, 5)
+    mover = BarrierEnergy(structure, driven, sliding=np.array([6, 7, 8]))
+    motion = MeshMotion(structure, 4, [edge], mover)
+    state = motion.move(motion.reference, motion.reference.positions + np.array([0.1, 0.05]))
+    np.testing.assert_allclose(state.vertices[5], [2.1, 0.05], atol=1e-15)
+    np.testing.assert_allclose(np.hypot(*state.vertices[6:9].T), 2.0, atol=1e-12)
+    np.testing.assert_allclose(generate(state.structure, 4).points, state.mesh.points, atol=1e-12)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Curve
+from hoblock.curves.derived import Displaced
 from hoblock.errors import MoverError
 from hoblock.movers.end_tangents import curve_end_tangents
 from hoblock.movers.sliding_path import PathEdge, SlidingPath
@@ -23,6 +24,8 @@ _SMOOTH = 1.0
 """Largest angle in degrees between the edges at a vertex that can slide from one to the other."""
 _STRAIGHT = 1e-12
 """Largest distance of a straight path's vertices from the line through its ends, relative to its length."""
+_ON_PATH = 1e-10
+"""Distance of a vertex from its path, relative to its length, that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,24 +128,26 @@ class Sliding:
         return np.asarray(s)
 
     def curves(self, vertices: Array) -> Mapping[int, Curve]:
-        """New geometry of the edges on curved paths, for positions (n, 2) of all vertices of the structure."""
+        """New geometry of the edges on curved paths, for positions (n, 2) of all vertices of the structure.
+
+        Where an end of a path is driven away from it, the last edge follows: the gap is blended along it.
+        """
         result: dict[int, Curve] = {}
-        if not self._curved:
-            return result
-        s = self.coordinates(vertices[self.vertices])
-        coordinate = dict(zip(self.vertices.tolist(), s.tolist(), strict=True))
         for k in self._curved:
             path = self.paths[k]
+            at = vertices[list(path.vertices)]
+            s = path.coordinates(at)
+            gap = at - path.points(s)
+            gap[np.hypot(gap[:, 0], gap[:, 1]) <= _ON_PATH * path.length] = 0.0
             for place, part in enumerate(path.edges):
-                ends = [
-                    coordinate.get(vertex, float(start))
-                    for vertex, start in zip(
-                        path.vertices[place : place + 2], path.starts[place : place + 2], strict=True
-                    )
-                ]
+                start, stop = float(s[place]), float(s[place + 1])
                 if path.closed:  # the coordinate of a vertex is known but for the length of the whole path
-                    ends[1] = ends[0] + (ends[1] - ends[0]) % path.length
-                result[part.edge] = path.part(place, *ends)
+                    stop = start + (stop - start) % path.length
+                curve: Curve = path.part(place, start, stop)
+                if gap[place : place + 2].any():
+                    ends = gap[place : place + 2] if part.forward else gap[place : place + 2][::-1]
+                    curve = Displaced(curve, *((float(x), float(y)) for x, y in ends))
+                result[part.edge] = curve
         return result
 
 

@@ -75,6 +75,16 @@ class PathEdge:
         """Points at arc lengths from where the path enters the edge."""
         return self._exact(lengths) if self._table is None or self._spline is None else self._spline(lengths)
 
+    def derivatives(self, lengths: Array) -> tuple[Array, Array] | None:
+        """First and second derivatives of the points by the arc length; None if the curve is not smooth."""
+        if self._table is None:
+            along = (self.ends[1] - self.ends[0]) / self.length
+            tangent = along if self.forward else -along
+            return np.tile(tangent, (len(lengths), 1)), np.zeros((len(lengths), 2))
+        if self._spline is None:
+            return None
+        return self._spline(lengths, 1), self._spline(lengths, 2)
+
     def _exact(self, lengths: Array) -> Array:
         from_first = lengths if self.forward else self.length - lengths
         if self._table is None or self.curve is None:
@@ -119,22 +129,32 @@ class SlidingPath:
 
     def points(self, s: Array) -> Array:
         """Points (k, 2) at coordinates (k,); beyond the ends of an open path those of its tangents there."""
-        inside = s % self.length if self.closed else np.clip(s, 0.0, self.length)
-        edge = np.clip(np.searchsorted(self.starts, inside, side="right") - 1, 0, len(self.edges) - 1)
+        inside, edge = self._places(s)
         result = np.empty((len(s), 2))
-        for k in np.unique(edge):
+        for k in set(edge.tolist()):
             here = edge == k
             result[here] = self.edges[k].points(inside[here] - self.starts[k])
         if not self.closed and (beyond := s - inside).any():
-            step = _DIFFERENCE * self.length
-            ends = np.where(inside > 0.5 * self.length, self.length, 0.0)
-            inner = np.abs(ends - step)
-            tangent = (self.points(ends) - self.points(inner)) / (ends - inner)[:, None]
-            result += beyond[:, None] * tangent
+            result += beyond[:, None] * self.derivatives(inside)[0]
         return result
 
     def derivatives(self, s: Array) -> tuple[Array, Array]:
         """First and second derivatives (k, 2) of the points by the coordinate."""
+        inside, edge = self._places(s)
+        first, second = np.empty((len(s), 2)), np.empty((len(s), 2))
+        for k in set(edge.tolist()):
+            here = edge == k
+            found = self.edges[k].derivatives(inside[here] - self.starts[k])
+            first[here], second[here] = self._differences(s[here]) if found is None else found
+        return first, second
+
+    def _places(self, s: Array) -> tuple[Array, Index]:
+        """Coordinates within the path, and the edges they are on."""
+        inside = s % self.length if self.closed else np.clip(s, 0.0, self.length)
+        return inside, np.clip(np.searchsorted(self.starts, inside, side="right") - 1, 0, len(self.edges) - 1)
+
+    def _differences(self, s: Array) -> tuple[Array, Array]:
+        """Derivatives by differences of order four, for curves that no spline stands for."""
         h = _DIFFERENCE * float(np.diff(self.starts).min())
         at = s if self.closed else np.clip(s, 2.0 * h, self.length - 2.0 * h)
         low2, low, mid, high, high2 = self.points(np.concatenate([at + k * h for k in range(-2, 3)])).reshape(5, -1, 2)
