@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
-from hoblock.curves import Curve, CuttableCurve, NodalCurve
+from hoblock.curves import Curve, CuttableCurve
 from hoblock.errors import CurveError, InvalidMeshError, MoverError
 from hoblock.generate import generate, raise_if_invalid, regenerate
 from hoblock.grading import EdgeGrading
@@ -18,6 +18,7 @@ from hoblock.layout import layout
 from hoblock.mesh import QuadMesh
 from hoblock.motion.crossings import boundary_crossing
 from hoblock.motion.driven_edges import driven_edges
+from hoblock.motion.explicit_edges import ExplicitEdges
 from hoblock.motion.inherited_shapes import inherited_shapes
 from hoblock.motion.mesh_state import MeshState
 from hoblock.motion.node_blending import NodeBlending, node_blending
@@ -107,7 +108,8 @@ class MeshMotion:
         mesh = generate(structure, order) if mesh is None else mesh
         self._plan = layout(structure, order)
         positions = mesh.points[driven.nodes]
-        self._inherited = inherited_shapes(structure, driven, positions, inherit)
+        shapes = inherited_shapes(structure, driven, positions, inherit)
+        self._explicit = ExplicitEdges(structure, mesh, driven, mover.paths, shapes)
         self._find_moving(structure, mesh)
         lower = det_jacobian_bounds(mesh)[0]
         if not (lower > 0.0).all():
@@ -179,7 +181,7 @@ class MeshMotion:
         vertices = mover.move(current.vertices, positions[driven.vertex_rows], tangents)
 
         def structure() -> BlockStructure:
-            return reference.structure.moved(vertices, self._curves(positions, vertices))
+            return reference.structure.moved(vertices, self._explicit.curves(positions, vertices))
 
         if self._blending is not None:
             points = self._blended(self._blending, positions, vertices)
@@ -209,53 +211,21 @@ class MeshMotion:
         reference, driven = self.reference, self.driven
         given = np.empty((len(blending.given), 2))
         given[: len(self._inner_rows)] = (positions - reference.positions)[self._inner_rows]
-        if self._explicit:
-            given[len(self._inner_rows) :] = self._explicit_displacements(positions, vertices)
+        if self._explicit.edges:
+            given[len(self._inner_rows) :] = self._explicit.displacements(positions, vertices)
         moved = vertices[blending.vertices] - reference.vertices[blending.vertices]
         points = blending.moved(reference.mesh.points, moved, given)
         points[driven.nodes] = positions
         return points
 
-    def _explicit_displacements(self, positions: Array, vertices: Array) -> Array:
-        """Displacements of the inner nodes of edges on curved paths and of those with inherited shapes."""
-        points, plan = self.reference.mesh.points, self._plan
-        curves = self._mover.paths.curves(vertices)
-        result = [
-            np.asarray(curves[edge](plan.parameters_of_edge(edge)[1:-1])) - points[plan.nodes_of_edge(edge)[1:-1]]
-            for edge in self._mover.paths.curved_edges
-        ]
-        extra = self._inherited.displacements(self.driven, positions, vertices)
-        for edge, shape in zip(self._inherited.edges, extra, strict=True):
-            result.append(self._chord_displacement(edge, vertices) + shape)
-        return np.concatenate([np.zeros((0, 2)), *result])
-
-    def _chord_displacement(self, edge: int, vertices: Array) -> Array:
-        """Displacements of the inner nodes of an edge that blends those of its ends."""
-        t = self._plan.parameters_of_edge(edge)[1:-1, None]
-        first, second = (vertices - self.reference.vertices)[self.driven.topology.edges[edge]]
-        return np.asarray((1.0 - t) * first + t * second)
-
-    def _curves(self, positions: Array, vertices: Array) -> Mapping[int, Curve]:
-        """New geometry of all edges that do not just blend the displacements of their ends."""
-        curves = {**self._mover.paths.curves(vertices), **self.driven.curves(positions)}
-        extra = self._inherited.displacements(self.driven, positions, vertices)
-        reference, plan = self.reference.mesh, self._plan
-        for edge, shape in zip(self._inherited.edges, extra, strict=True):
-            nodes = reference.points[plan.nodes_of_edge(edge)].copy()
-            nodes[1:-1] += self._chord_displacement(edge, vertices) + shape
-            nodes[0], nodes[-1] = vertices[self.driven.topology.edges[edge]]
-            curves[edge] = NodalCurve(nodes, reference.order)
-        return curves
-
     def _find_moving(self, structure: BlockStructure, mesh: QuadMesh) -> None:
         """Find what can move, and how the nodes follow."""
         driven, paths, topology, plan = self.driven, self._mover.paths, structure.topology, self._plan
         self.moving_vertices = np.unique(np.concatenate([self._mover.free, paths.vertices, driven.vertices]))
-        self._explicit = (*paths.curved_edges, *self._inherited.edges)
         vertices = np.zeros(len(topology.vertex_names), dtype=bool)
         vertices[self.moving_vertices] = True
         moving = vertices[topology.quads].any(axis=1)
-        moving |= np.isin(topology.block_edges, [*driven.edges, *self._explicit]).any(axis=1)
+        moving |= np.isin(topology.block_edges, [*driven.edges, *self._explicit.edges]).any(axis=1)
         self.moving_blocks = np.flatnonzero(moving)
         starts = plan.numbers.cell_starts
         self._cells = np.concatenate(
@@ -265,7 +235,7 @@ class MeshMotion:
         self._inner_rows = np.concatenate([np.zeros(0, dtype=np.int64), *(rows[1:-1] for rows in driven.rows)])
         self._blending: NodeBlending | None = None
         if plan.node_count <= _BLENDED_NODES and self._blends(structure, edges, vertices):
-            self._blending = node_blending(plan, topology, self.moving_vertices, (*driven.edges, *self._explicit))
+            self._blending = node_blending(plan, topology, self.moving_vertices, (*driven.edges, *self._explicit.edges))
         self.moving_nodes = np.unique(mesh.cells[self._cells]) if self._blending is None else self._blending.nodes
 
     def _blends(self, structure: BlockStructure, edges: Index, moving: NDArray[np.bool_]) -> bool:
@@ -274,7 +244,7 @@ class MeshMotion:
             if isinstance(structure.gradings[edge], EdgeGrading):
                 return False
             curve = structure.curves.get(edge)
-            explicit = edge in self.driven.edges or edge in self._explicit
+            explicit = edge in self.driven.edges or edge in self._explicit.edges
             if curve is not None and not explicit and moving[structure.topology.edges[edge]].any() and _cuttable(curve):
                 return False
         return True

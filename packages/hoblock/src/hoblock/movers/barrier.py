@@ -13,12 +13,11 @@ from hoblock.errors import MoverError
 from hoblock.movers._block_energy import BlockEnergy, BoundEnergy, LengthEnergy
 from hoblock.movers._corner_energies import AngleEnergy, CornerEnergy, DistortionEnergy
 from hoblock.movers._corners import block_corners, edge_vectors
-from hoblock.movers._newton import Minimum, minimise, solve_positive, untangle
+from hoblock.movers._driven_tangents import check_tangents, driven_tangents, turned_tangents
+from hoblock.movers._linear_response import linear_response
+from hoblock.movers._newton import Minimum, minimise, untangle
 from hoblock.movers._roles import VertexRoles
-from hoblock.movers._unknowns import chain_rule
-from hoblock.movers.end_tangents import structure_end_tangents
 from hoblock.movers.sliding import Sliding
-from hoblock.topology import BlockTopology
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -118,7 +117,7 @@ class BarrierEnergy:
         self._check()
         structure = self.reference
         roles = VertexRoles.of(structure, self.driven, self.sliding)
-        edges, tangents = self._driven_edges(roles)
+        edges, tangents = driven_tangents(structure, roles, self.edges, self.tangents)
         corners = block_corners(structure, roles.movable, edges, tangents)
         start = corners.vectors(structure.vertices, tangents, structure.vertices)
         cross = start[0] * start[3] - start[1] * start[2]
@@ -145,7 +144,7 @@ class BarrierEnergy:
             ("_edges", edges),
             ("_tangents", tangents),
             ("_block", block),
-            ("_response", _response(structure, roles)),
+            ("_response", linear_response(structure, roles)),
             ("_length", float(np.ptp(structure.vertices, axis=0).max())),
         ):
             object.__setattr__(self, name, value)
@@ -195,7 +194,7 @@ class BarrierEnergy:
         positions = roles.checked(positions, "positions", self.driven)
         if tangents is not None:
             tangents = np.asarray(tangents, dtype=float)
-            _check_tangents(tangents, self._edges, self.reference.topology)
+            check_tangents(tangents, self._edges, self.reference.topology)
         if not block.size:
             return BarrierPlacement(roles.assembled(positions, np.zeros((0, 2))), 0, np.inf, True)
         bound = block.bound(positions, tangents)
@@ -247,7 +246,7 @@ class BarrierEnergy:
         if not block.size:
             return result
         if tangents is None or tangent_velocity is None:
-            tangents, tangent_velocity = self._turned(vertices, result)
+            tangents, tangent_velocity = turned_tangents(self.reference, self._edges, self._tangents, vertices, result)
         bound, y = block.bound(vertices[self.driven], tangents), block.unknowns(vertices)
         change = block.corners.velocities(vertices, result, tangents, tangent_velocity)
         lengths = None if block.lengths is None else block.lengths.edges.vectors(result)
@@ -276,17 +275,6 @@ class BarrierEnergy:
         found = minimise(bound, y, 0.0, iterations=_ITERATIONS, **options)
         return replace(found, iterations=spent + found.iterations)
 
-    def _turned(self, vertices: Array, velocity: Array) -> tuple[Array, Array]:
-        """End tangents of the driven edges that turn with their chords, and their time derivatives."""
-        ends = self.reference.topology.edges[self._edges]
-        chord, change = (a[ends[:, 1]] - a[ends[:, 0]] for a in (vertices, velocity))
-        before = self.reference.vertices[ends[:, 1]] - self.reference.vertices[ends[:, 0]]
-        z, dz, z0 = ((a[:, 0] + 1j * a[:, 1])[:, None] for a in (chord, change, before))
-        start = self._tangents[..., 0] + 1j * self._tangents[..., 1]
-        t = start * (z / np.abs(z)) / (z0 / np.abs(z0))
-        dt = t * (1j * (dz * z.conj()).imag / np.abs(z) ** 2)
-        return np.stack([t.real, t.imag], axis=-1), np.stack([dt.real, dt.imag], axis=-1)
-
     def _failure(self, bound: BoundEnergy, y: Array) -> str:
         """Message of a failed move, with the corner that is worst where it ended."""
         corners, roles = self._block.corners, self._block.roles
@@ -304,26 +292,6 @@ class BarrierEnergy:
             " else move in smaller steps, let vertices slide, or use more blocks around the body."
         )
 
-    def _driven_edges(self, roles: VertexRoles) -> tuple[Index, Array]:
-        """Driven edges and their unit end tangents in the reference, checked."""
-        topology = self.reference.topology
-        outer = np.flatnonzero(topology.blocks_per_edge == 1)
-        if self.edges is None:
-            edges = outer[np.isin(topology.edges[outer], roles.driven).all(axis=1)]
-        else:
-            edges = np.array(self.edges, dtype=np.int64)
-            known = edges.ndim == 1 and not (edges.size and (edges.min() < 0 or edges.max() >= len(topology.edges)))
-            if not known or not np.isin(topology.edges[edges], roles.driven).all():
-                raise MoverError(
-                    f"barrier: edges are {edges.tolist()}; expected numbers of edges between driven vertices. "
-                    "Use topology.edge(first, second)."
-                )
-        if self.tangents is None:
-            return edges, structure_end_tangents(self.reference, edges)
-        tangents = np.array(self.tangents, dtype=float)
-        _check_tangents(tangents, edges, topology)
-        return edges, tangents
-
     def _check(self) -> None:
         """Raise for a parameter that is out of range."""
         checks: tuple[tuple[str, object, bool, str], ...] = (
@@ -335,37 +303,3 @@ class BarrierEnergy:
         for name, value, good, expected in checks:
             if not good:
                 raise MoverError(f"barrier: {name} is {value!r}; expected {expected}.")
-
-
-def _check_tangents(tangents: Array, edges: Index, topology: BlockTopology) -> None:
-    """Raise for tangents that do not fit the driven edges."""
-    if tangents.shape != (len(edges), 2, 2):
-        raise MoverError(f"barrier: tangents have shape {tangents.shape}; expected {(len(edges), 2, 2)}.")
-    good = np.isfinite(tangents).all(axis=(1, 2))
-    if not good.all():
-        k = int(np.argmin(good))
-        raise MoverError(
-            f"barrier: the tangents of edge {topology.edge_name(int(edges[k]))} are {tangents[k].tolist()}; expected "
-            "finite numbers. Nodes at its ends coincide, or are not finite."
-        )
-
-
-def _response(structure: BlockStructure, roles: VertexRoles) -> Array:
-    """Linear response (size, 2 len(driven)) of the unknowns to the driven vertices in the reference."""
-    count = 2 * len(roles.free) + len(roles.sliding.vertices)
-    if not count or not len(roles.driven):
-        return np.zeros((count, 2 * len(roles.driven)))
-    moving = np.union1d(roles.movable, roles.driven)
-    none = np.zeros(0, dtype=np.int64)
-    corners = block_corners(structure, moving, none, np.zeros((0, 2, 2)))
-    z = corners.vectors(structure.vertices, None, structure.vertices)
-    hessian = corners.sums.sparse(DistortionEnergy(z, 1.0, 0.0).derivatives(z, 0.0).hessian)
-    first = roles.sliding.derivatives(roles.sliding.start)[0]
-    chain = chain_rule(
-        np.searchsorted(moving, roles.free), np.searchsorted(moving, roles.sliding.vertices), first, len(moving)
-    )
-    driven = (2 * np.searchsorted(moving, roles.driven)[:, None] + [0, 1]).ravel()
-    right = np.asarray((chain.T @ hessian[:, driven]).todense())
-    inner = chain.T @ hessian @ chain
-    solution = solve_positive(np.asarray(inner.todense()) if count <= 400 else inner, -right, regularised=True)
-    return np.zeros_like(right) if solution is None else solution
