@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Curve, NodalCurve
-from hoblock.layout import Layout, layout
+from hoblock.layout import Layout
 from hoblock.mesh import QuadMesh
 from hoblock.motion.driven_edges import DrivenEdges
 from hoblock.motion.inherited_shapes import InheritedShapes
@@ -29,14 +29,16 @@ class ExplicitEdges:
     ----------
     structure : BlockStructure
         The reference.
+    plan : Layout
     mesh : QuadMesh
-        Its mesh.
+        Of the reference.
     driven : DrivenEdges
     paths : Sliding
     shapes : InheritedShapes
     """
 
     structure: BlockStructure
+    plan: Layout
     mesh: QuadMesh
     driven: DrivenEdges
     paths: Sliding
@@ -56,7 +58,7 @@ class ExplicitEdges:
             Of the driven nodes.
         vertices : ndarray, shape (n, 2)
         """
-        plan, points = layout(self.structure, self.mesh.order), self.mesh.points
+        plan, points = self.plan, self.mesh.points
         curves = self.paths.curves(vertices)
         result = [
             np.asarray(curves[edge](plan.parameters_of_edge(edge)[1:-1])) - points[plan.nodes_of_edge(edge)[1:-1]]
@@ -64,23 +66,23 @@ class ExplicitEdges:
         ]
         extra = self.shapes.displacements(self.driven, positions, vertices)
         for edge, shape in zip(self.shapes.edges, extra, strict=True):
-            result.append(self._blended(plan, edge, vertices) + shape)
+            result.append(self._blended(edge, vertices) + shape)
         return np.concatenate([np.zeros((0, 2)), *result])
 
     def curves(self, positions: Array, vertices: Array) -> Mapping[int, Curve]:
         """New geometry of ``edges`` and of the driven ones."""
         curves = {**self.paths.curves(vertices), **self.driven.curves(positions)}
-        plan, points = layout(self.structure, self.mesh.order), self.mesh.points
+        plan, points = self.plan, self.mesh.points
         extra = self.shapes.displacements(self.driven, positions, vertices)
         for edge, shape in zip(self.shapes.edges, extra, strict=True):
             nodes = points[plan.nodes_of_edge(edge)].copy()
-            nodes[1:-1] += self._blended(plan, edge, vertices) + shape
+            nodes[1:-1] += self._blended(edge, vertices) + shape
             nodes[0], nodes[-1] = vertices[self.structure.topology.edges[edge]]
             curves[edge] = NodalCurve(nodes, self.mesh.order)
         return curves
 
-    def _blended(self, plan: Layout, edge: int, vertices: Array) -> Array:
+    def _blended(self, edge: int, vertices: Array) -> Array:
         """Displacements of the inner nodes of an edge that blends those of its ends."""
-        t = plan.parameters_of_edge(edge)[1:-1, None]
+        t = self.plan.parameters_of_edge(edge)[1:-1, None]
         first, second = (vertices - self.structure.vertices)[self.structure.topology.edges[edge]]
         return np.asarray((1.0 - t) * first + t * second)

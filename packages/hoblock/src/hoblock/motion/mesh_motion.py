@@ -109,7 +109,7 @@ class MeshMotion:
         self._plan = layout(structure, order)
         positions = mesh.points[driven.nodes]
         shapes = inherited_shapes(structure, driven, positions, inherit)
-        self._explicit = ExplicitEdges(structure, mesh, driven, mover.paths, shapes)
+        self._explicit = ExplicitEdges(structure, self._plan, mesh, driven, mover.paths, shapes)
         self._find_moving(structure, mesh)
         lower = det_jacobian_bounds(mesh)[0]
         if not (lower > 0.0).all():
