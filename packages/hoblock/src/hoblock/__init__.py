@@ -81,6 +81,8 @@ if TYPE_CHECKING:
     from hoblock.fit import fit_errors
     from hoblock.io.block_file import read_structure
     from hoblock.io.mesh_file import read_mesh, write_mesh
+    from hoblock.motion import MeshMotion, MeshState
+    from hoblock.movers import AngleOptimisation, BarrierEnergy, PseudoSolid, Rule
     from hoblock.operations import (
         chains,
         extracted,
@@ -98,8 +100,14 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _ON_USE = {
+    "AngleOptimisation": "hoblock.movers",
+    "BarrierEnergy": "hoblock.movers",
     "GridField": "hoblock.fields",
     "MeshField": "hoblock.fields",
+    "MeshMotion": "hoblock.motion",
+    "MeshState": "hoblock.motion",
+    "PseudoSolid": "hoblock.movers",
+    "Rule": "hoblock.movers",
     "build_structure": "hoblock.building",
     "chains": "hoblock.operations",
     "extracted": "hoblock.operations",
@@ -130,9 +138,11 @@ def __getattr__(name: str) -> object:
 
 
 __all__ = [
+    "AngleOptimisation",
     "Arc",
     "ArcLength",
     "BSpline",
+    "BarrierEnergy",
     "Bezier",
     "BlockStructure",
     "BlockTopology",
@@ -159,6 +169,8 @@ __all__ = [
     "LocationError",
     "MeshField",
     "MeshFileError",
+    "MeshMotion",
+    "MeshState",
     "MissingExtraError",
     "MoverError",
     "NodalCurve",
@@ -166,9 +178,11 @@ __all__ = [
     "Parametric",
     "Pieces",
     "Polyline",
+    "PseudoSolid",
     "QuadMesh",
     "Quadratic",
     "QualitySummary",
+    "Rule",
     "SceneError",
     "Spline",
     "Tanh",
