@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +14,7 @@ from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import MatrixPattern, assemble_vector
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.linear.direct import DirectFactor
+from hofsi.linear.multifrontal import EliminationTree, multifrontal_solver
 from hofsi.linear.solver import Solver
 
 Array = NDArray[np.float64]
@@ -37,13 +39,23 @@ class CondensedSystem:
         Of the vector field.
     pinned : sequence of int
         Further unknowns that are held fixed, for example one pressure of an enclosed flow.
+    places : ndarray, shape (e, 2), optional
+        Where the elements are: condensed matrices are then factorised front by front (see
+        `hofsi.linear.multifrontal`), without places by SuperLU.
     """
 
     def __init__(
-        self, dofs: Index, boundary: int, size: int, constraints: NodeConstraints, pinned: tuple[int, ...] = ()
+        self,
+        dofs: Index,
+        boundary: int,
+        size: int,
+        constraints: NodeConstraints,
+        pinned: tuple[int, ...] = (),
+        places: Array | None = None,
     ) -> None:
         self.dofs, self.boundary, self.size = dofs, boundary, size
         self._solver: Callable[[sp.csc_matrix], Solver] = DirectFactor
+        self._places = places
         self.inner = dofs.shape[1] - boundary
         free = np.zeros(size, dtype=bool)
         free[dofs[:, :boundary]] = True
@@ -54,8 +66,12 @@ class CondensedSystem:
         number = np.full(size, -1)
         number[self.unknowns] = np.arange(len(self.unknowns))
         self._skeleton = number[dofs[:, :boundary]]
-        self._pattern = MatrixPattern(self._skeleton, len(self.unknowns))
         self._rotated, self._rotation = self._rotations(constraints)
+
+    @cached_property
+    def _pattern(self) -> MatrixPattern:
+        """Pattern of condensed matrices, made when one is asked for."""
+        return MatrixPattern(self._skeleton, len(self.unknowns))
 
     def _rotations(self, constraints: NodeConstraints) -> tuple[Index, Array]:
         """Elements with nodes in a frame of their own, and their local rotation matrices."""
@@ -76,17 +92,29 @@ class CondensedSystem:
         return elements, R
 
     def solved_by(self, solver: Callable[[sp.csc_matrix], Solver]) -> CondensedSystem:
-        """Return the same pattern with another solver of condensed matrices; at first that is `DirectFactor`."""
+        """Return the same pattern with another solver of condensed matrices."""
         other = copy(self)
-        other._solver = solver
+        other.__dict__.pop("_tree", None)
+        other._solver, other._places = solver, None
         return other
 
     def factorise(self, A: Array) -> CondensedFactor:
         """Condense and factorise element matrices A of shape (e, k, k)."""
         S, inverse, X = self._condensed(A)
-        return CondensedFactor(
-            self, A[:, : self.boundary, self.boundary :], inverse, X, self._solver(self._pattern.matrix(S))
-        )
+        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, self._factorised(S))
+
+    def _factorised(self, S: Array) -> Solver:
+        """What solves with condensed element matrices (e, boundary, boundary)."""
+        if self._tree is None:
+            return self._solver(self._pattern.matrix(S))
+        return multifrontal_solver(self._tree, S, lambda: self._pattern.matrix(S))
+
+    @cached_property
+    def _tree(self) -> EliminationTree | None:
+        """Fronts of the elements, made for the first factorisation."""
+        if self._places is None:
+            return None
+        return EliminationTree(self._skeleton, len(self.unknowns), self._places)
 
     def matrix(self, A: Array) -> sp.csc_matrix:
         """Return the condensed matrix of element matrices (e, k, k), in the nodes' own frames."""

@@ -43,7 +43,12 @@ class FluidSystem(Protocol):
 
 
 def fluid_system(
-    space: TaylorHood, constraints: NodeConstraints, pinned: tuple[int, ...], linear: LinearSettings, weights: Array
+    space: TaylorHood,
+    constraints: NodeConstraints,
+    pinned: tuple[int, ...],
+    linear: LinearSettings,
+    weights: Array,
+    places: Array,
 ) -> FluidSystem:
     """Choose the linear systems of a fluid.
 
@@ -57,9 +62,11 @@ def fluid_system(
     linear : LinearSettings
     weights : ndarray, shape (e, q)
         Integration weights of the elements.
+    places : ndarray, shape (e, 2)
+        Where the elements are.
     """
     if linear.solver == "direct":
-        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned)
+        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places)
     mass = np.zeros(space.velocity_count)
     np.add.at(mass, space.velocity_cells, weights @ space.velocity.N**2)
     return SaddlePointSystem(space, constraints, pinned, mass, linear.tolerance)

@@ -31,7 +31,8 @@ def solid_system(equations: SolidEquations, supports: SolidSupports, linear: Lin
     """
     mesh = equations.mesh
     size, constraints = 2 * len(mesh.points), supports.constraints
-    system = CondensedSystem(equations.dofs, equations.boundary, size, constraints)
+    places = mesh.points[mesh.cells].mean(axis=1)
+    system = CondensedSystem(equations.dofs, equations.boundary, size, constraints, places=places)
     if linear.solver == "direct":
         return system
     nodes = equations.dofs[:, : equations.boundary : 2] // 2

@@ -1,0 +1,226 @@
+"""Multifrontal LU of a sum of element matrices: dense LAPACK factorisations on a nested dissection of the elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from hofsi.errors import LinearSolverError
+from hofsi.linear.checked import CheckedSolver
+from hofsi.linear.direct import PivotedFactor
+from hofsi.linear.dissection import Front, dissect
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+__all__ = ["EliminationTree", "MultifrontalFactor", "multifrontal_solver"]
+
+_LEAF_UNKNOWNS = 260
+"""Unknowns of the elements of a leaf together, each counted as often as elements have it."""
+
+
+class EliminationTree:
+    """What can be known before the numbers: the fronts, and where the entries of their children and elements go.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (e, k)
+        Unknowns of each element; negative ones are dropped.
+    size : int
+        Number of unknowns.
+    places : ndarray, shape (e, 2)
+        Where the elements are.
+    leaf : int, optional
+        Elements of a part that is not cut any more.
+    """
+
+    def __init__(self, cells: Index, size: int, places: Array, leaf: int | None = None) -> None:
+        self.cells, self.size = cells, size
+        self.fronts = dissect(cells, places, leaf or max(1, round(_LEAF_UNKNOWNS / max(1, cells.shape[1]))))
+        self._leaves = [k for k, front in enumerate(self.fronts) if not front.children]
+        self._elements = np.concatenate([self.fronts[k].elements for k in self._leaves])
+        sizes = [len(self.fronts[k].unknowns) ** 2 for k in self._leaves]
+        self.leaf_starts = dict(zip(self._leaves, np.concatenate(([0], np.cumsum(sizes)))[:-1].tolist(), strict=True))
+        self._leaf_size = int(sum(sizes))
+        self._slots = self._leaf_slots()
+        self.maps = [self._runs(front) for front in self.fronts]
+
+    @property
+    def entries(self) -> int:
+        """Number of entries of the factors."""
+        return sum(len(f.unknowns) ** 2 - (len(f.unknowns) - f.eliminated) ** 2 for f in self.fronts)
+
+    @property
+    def multiplications(self) -> float:
+        """Number of multiplications of a factorisation, about."""
+        n = np.array([(front.eliminated, len(front.unknowns)) for front in self.fronts], dtype=float)
+        a, b = n[:, 0], n[:, 1] - n[:, 0]
+        return float((a**3 / 3.0 + a**2 * b + a * b**2).sum())
+
+    def _leaf_slots(self) -> Index:
+        """Where the entries of element matrices go in the matrices of the leaves, column after column."""
+        slots = np.full((len(self._elements), self.cells.shape[1] ** 2), self._leaf_size, dtype=np.int64)
+        row = 0
+        for k in self._leaves:
+            front = self.fronts[k]
+            count, n = len(front.elements), len(front.unknowns)
+            order = np.argsort(front.unknowns)
+            mine = self.cells[front.elements]
+            place = order[np.minimum(np.searchsorted(front.unknowns, mine, sorter=order), n - 1)] if n else mine
+            # Element matrices are (row, column) in memory, fronts (column, row).
+            slot = self.leaf_starts[k] + place[:, None, :] * n + place[:, :, None]
+            kept = (mine >= 0)[:, None, :] & (mine >= 0)[:, :, None]
+            slots[row : row + count] = np.where(kept, slot, self._leaf_size).reshape(count, -1)
+            row += count
+        return slots.ravel()
+
+    def _runs(self, front: Front) -> list[list[tuple[slice, slice]]]:
+        """For each child, the runs of what is left over there and where they go here: (here, there)."""
+        result = []
+        order = np.argsort(front.unknowns)
+        for child in front.children:
+            left = self.fronts[child].unknowns[self.fronts[child].eliminated :]
+            place = order[np.searchsorted(front.unknowns, left, sorter=order)]
+            cuts = np.flatnonzero(np.diff(place) != 1) + 1
+            starts, stops = np.concatenate(([0], cuts)), np.append(cuts, len(place))
+            result.append(
+                [
+                    (slice(int(place[a]), int(place[a]) + int(b - a)), slice(int(a), int(b)))
+                    for a, b in zip(starts, stops, strict=True)
+                    if b > a
+                ]
+            )
+        return result
+
+    def leaf_matrices(self, S: Array) -> Array:
+        """Matrices of all leaves, one after the other, from element matrices (e, k, k)."""
+        values = S[self._elements].ravel()
+        return np.asarray(np.bincount(self._slots, weights=values, minlength=self._leaf_size + 1), dtype=float)
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Factors of a front: LU of what is eliminated, what is below it, and its solution for what is beside it."""
+
+    lu: Array
+    pivots: Index
+    below: Array
+    beside: Array
+    own: Index
+    left: Index
+
+
+def multifrontal_solver(tree: EliminationTree, S: Array, matrix: Callable[[], sp.csc_matrix]) -> CheckedSolver:
+    """Factorise a sum of element matrices; where fronts do not serve, by SuperLU with full pivoting.
+
+    Parameters
+    ----------
+    tree : EliminationTree
+    S : ndarray, shape (e, k, k)
+    matrix : callable
+        Makes the same as a sparse matrix.
+
+    Raises
+    ------
+    LinearSolverError
+        If the matrix is singular.
+    """
+    try:
+        return CheckedSolver(MultifrontalFactor(tree, S), lambda: PivotedFactor(matrix()))
+    except LinearSolverError:
+        solver = CheckedSolver(PivotedFactor(matrix()))
+        solver.fell_back = True
+        return solver
+
+
+class MultifrontalFactor:
+    """LU factors of a sum of element matrices, with partial pivoting inside each front.
+
+    Parameters
+    ----------
+    tree : EliminationTree
+    S : ndarray, shape (e, k, k)
+        Element matrices.
+
+    Raises
+    ------
+    LinearSolverError
+        If what a front eliminates is singular; another order of elimination may not be.
+
+    References
+    ----------
+    Duff, Reid, ACM Trans. Math. Softw. 9 (1983) 302–325, doi:10.1145/356044.356047.
+    """
+
+    def __init__(self, tree: EliminationTree, S: Array) -> None:
+        self._tree, self._S = tree, S
+        leaves = tree.leaf_matrices(S)
+        waiting: dict[int, Array] = {}
+        self._blocks: list[_Block] = []
+        for k, front in enumerate(tree.fronts):
+            n, m = len(front.unknowns), front.eliminated
+            if front.children:
+                F = np.zeros((n, n), order="F")
+                for child, runs in zip(front.children, tree.maps[k], strict=True):
+                    C = waiting.pop(child)
+                    for rows, there in runs:
+                        for columns, beyond in runs:
+                            F[rows, columns] += C[there, beyond]
+            else:
+                start = tree.leaf_starts[k]
+                F = leaves[start : start + n * n].reshape(n, n).T
+            waiting[k] = self._eliminate(front, F, m)
+
+    def _eliminate(self, front: Front, F: Array, m: int) -> Array:
+        """Eliminate the first m unknowns of a front; return what is left."""
+        if not m:
+            return F
+        lu, pivots, info = lapack.dgetrf(F[:m, :m])
+        if info:
+            raise LinearSolverError(f"a front of {m} unknowns is singular at unknown {front.unknowns[abs(info) - 1]}.")
+        if len(F) == m:
+            nothing = np.zeros((0, 0))
+            self._blocks.append(
+                _Block(lu, pivots, np.zeros((0, m)), np.zeros((m, 0)), front.unknowns, front.unknowns[m:])
+            )
+            return nothing
+        beside = lapack.dgetrs(lu, pivots, F[:m, m:])[0]
+        below = F[m:, :m].copy(order="F")
+        self._blocks.append(_Block(lu, pivots, below, beside, front.unknowns[:m], front.unknowns[m:]))
+        rest = below @ beside
+        np.subtract(F[m:, m:], rest, out=rest)
+        return np.asarray(rest)
+
+    @property
+    def entries(self) -> int:
+        """Number of entries of the factors."""
+        return self._tree.entries
+
+    def norm(self) -> float:
+        """A bound of the largest sum of absolute values of a row: sums of the elements' own."""
+        cells, size = self._tree.cells, self._tree.size
+        rows = np.abs(self._S).sum(axis=2)
+        return float(np.bincount(cells.ravel() + 1, weights=rows.ravel(), minlength=size + 1)[1:].max(initial=0.0))
+
+    def substitute(self, b: Array) -> Array:
+        """Solve once, without a look at the residual."""
+        x = b.copy()
+        for block in self._blocks:
+            y = lapack.dgetrs(block.lu, block.pivots, x[block.own])[0]
+            x[block.own] = y
+            x[block.left] -= block.below @ y
+        for block in reversed(self._blocks):
+            x[block.own] -= block.beside @ x[block.left]
+        return x
+
+    def product(self, x: Array) -> Array:
+        """The matrix times a vector, element by element."""
+        cells, size = self._tree.cells, self._tree.size
+        local = np.append(x, 0.0)[cells]  # number -1 reads the zero
+        products = (self._S @ local[:, :, None])[:, :, 0]
+        return np.asarray(np.bincount(cells.ravel() + 1, weights=products.ravel(), minlength=size + 1)[1:], dtype=float)
