@@ -292,6 +292,39 @@ end = 0.8
     assert np.abs(record.state.fluid.pressure).max() < 5e-5
 
 
+def test_steps_that_are_far_too_large_still_reach_the_steady_flow() -> None:
+    # A lid that is there at once, and steps of many times the flow's own: the linear steps alone would grow.
+    scene = f"""{BOX}
+[fluid]
+density = 1.0
+viscosity = 0.01
+blocks = ["one"]
+[[fluid.boundary]]
+on = ["bottom", "left"]
+type = "no-slip"
+[[fluid.boundary]]
+on = "top"
+type = "velocity"
+x = "2*x*(2 - x)"
+y = 0
+[[fluid.boundary]]
+on = "right"
+type = "do-nothing"
+[time]
+dt = 20
+steps = 40
+"""
+    problem, record, _ = last(scene)
+    steady = last(scene.replace("dt = 20\nsteps = 40", "steady = true"))[1]
+    assert problem.fluid is not None
+    counts = problem.fluid.solver.counts
+    assert 1 <= counts.iterations < 20
+    assert counts.factorisations == 40 + counts.iterations
+    assert record.state.fluid is not None
+    assert steady.state.fluid is not None
+    assert np.abs(record.state.fluid.velocity - steady.state.fluid.velocity).max() < 1e-8
+
+
 def test_motions_that_contradict_each_other_where_they_meet_are_reported() -> None:
     scene = f"""{BOX}
 [fluid]

@@ -94,7 +94,8 @@ def test_a_fluid_alone(execute: Callable[..., Process], fluid_only: str) -> None
     assert (counts["steps"], counts["coupling_iterations"], counts["blocks_regenerated"]) == (5, 0, 0)
     # The mesh stands still: one geometry; a matrix without convection for the first step, one for all others.
     assert (counts["fluid"]["geometries"], counts["fluid"]["constant_assemblies"]) == (1, 2)
-    assert counts["fluid"]["factorisations"] == 5  # linear steps
+    # Linear steps; the start is impulsive, so that the first ones go on with Newton's method.
+    assert counts["fluid"]["factorisations"] == 5 + counts["fluid"]["iterations"] <= 7
     assert {"mesh", "solid", "coupling", "fields", "plots"} & set(done.summary["seconds"]) == set()
 
 

@@ -407,6 +407,21 @@ def test_second_order_in_time_also_with_varying_steps_on_a_moving_mesh(flows, pa
     assert errors[1] < 2e-2
 
 
+def test_linear_steps_are_those_of_newtons_method_but_for_a_higher_order(flows):
+    # From rest under a force that grows slowly: what the linearisation leaves out is of fourth order in every step.
+    def march(count, mode):
+        mesh = flows.rectangle(3, 3, 2, bend=0.05)
+        conditions = [case.NoSlip(("left", "bottom", "top")), flows.traction("right", 0, 0)]
+        force = ("8*t**2*y", "-6*t**2*sin(2*x)")
+        solver = flows.solver(mesh, conditions, viscosity=0.02, body_force=force, convection=mode)
+        state = flows.march(solver, solver.initial_state(), (1.0 / count,) * count, linear=mode == "extrapolated")
+        return state.velocity
+
+    differences = [np.abs(march(n, "extrapolated") - march(n, "newton")).max() for n in (16, 32, 64)]
+    assert np.abs(march(8, "newton")).max() > 0.3
+    assert rate(differences) > 3.0
+
+
 # Conservation ---------------------------------------------------------------------------------------------------------
 
 

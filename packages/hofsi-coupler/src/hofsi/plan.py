@@ -209,7 +209,7 @@ def _fluid(case: Case, meshes: _Meshes) -> Iterator[Item]:
         method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
         yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}")
     elif case.fluid.model == "navier-stokes":
-        yield Item("convection", "convecting velocity extrapolated to second order: linear steps")
+        yield Item("convection", "linearised about the velocity extrapolated to second order: linear steps")
     solver = {
         "direct": f"sparse LU of {kept} unknowns after static condensation",
         "amg": f"FGMRES with algebraic multigrid to a relative residual of {case.linear.tolerance:g}",
@@ -344,7 +344,8 @@ def _without_iteration(case: Case) -> Iterator[Item]:
             yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
         elif not _iterates(case, fluid):
             meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
-            yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}")
+            unless = "" if case.solids else ", unless the flow changes at once, as after an impulsive start"
+            yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}{unless}")
     if case.linear.solver == "direct":
         yield Item("algebraic multigrid", 'linear.solver = "direct"')
     if case.solids and all(solid.model == "linear" for solid in case.solids):

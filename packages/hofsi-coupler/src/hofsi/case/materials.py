@@ -37,6 +37,7 @@ class Fluid:
         Exactly one for each outer edge that is not shared with a solid.
     model : {"navier-stokes", "stokes"}
     convection : {"auto", "newton", "picard", "extrapolated"}
+        How a step treats convection; "extrapolated" linearises about the velocity that the last steps let expect.
         "auto" leaves the choice to the solver.
     body_force : pair of Expression of x, y, t, or None
         Per unit volume, gravity included; None is zero.

@@ -43,7 +43,7 @@ class FluidSolver(FluidEquations):
         time : float
             At the end of the step.
         linear : bool
-            Extrapolate the convecting velocity (second order) so that the step is linear.
+            Linearise about the extrapolated velocity (second order).
         """
         order = min(2, len(state.velocities), len(steps))
         c = bdf_weights(steps[:order])
@@ -52,14 +52,16 @@ class FluidSolver(FluidEquations):
         if any(points is not old for old in state.points):
             moving = [points, *state.points][: order + 1]
             mesh_velocity = np.tensordot(c, np.stack(moving), axes=1)
-        advective = None
-        if linear and self.convecting:
-            e = extrapolation_weights(steps, order - 1)
-            advective = np.tensordot(e, np.stack(state.velocities[:order]), axes=1) - mesh_velocity
-            self.boundary.stick(advective, points, mesh_velocity)
-        return FluidStep(self, state, points, mesh_velocity, float(c[0]), history, time, advective, order)
+        e = extrapolation_weights(steps, order - 1)
+        expected = np.tensordot(e, np.stack(state.velocities[:order]), axes=1)
+        if linear:
+            relative = expected - mesh_velocity
+            self.boundary.stick(relative, points, mesh_velocity)
+            expected = relative + mesh_velocity
+        rate = float(c[0])
+        return FluidStep(self, state, points, mesh_velocity, rate, history, time, expected, order, linear=linear)
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
         """Start a search for the steady state on a mesh at rest."""
         zero = np.zeros(points.shape)
-        return FluidStep(self, state, points, zero, 0.0, zero, state.time, None, 0)
+        return FluidStep(self, state, points, zero, 0.0, zero, state.time, state.velocity, 0, linear=False)

@@ -56,8 +56,11 @@ class FluidState:
 class FluidStep:
     """One step, or the steady problem, on one mesh; made by `FluidSolver`.
 
-    A linear step is assembled and factorised once, however often it is solved. A steady problem that Newton's method
-    does not solve from where it starts is approached from Stokes flow, with more and more of the convection.
+    A linear step is Newton's linearisation about the velocity that the last steps let expect, which is of second order
+    in the step size: with δ the error of that velocity it leaves out ρ δ·∇δ, of fourth order. (Merely to convect with
+    the expected velocity leaves out ρ δ·∇u, of second order, which feeds energy into fast oscillations.) It is
+    assembled and factorised once, however often it is solved. A steady problem that Newton's method does not solve
+    from where it starts is approached from Stokes flow, with more and more of the convection.
 
     Attributes
     ----------
@@ -75,19 +78,21 @@ class FluidStep:
         rate: float,
         history: Array,
         time: float,
-        advective: Array | None,
+        expected: Array,
         order: int,
+        *,
+        linear: bool,
     ) -> None:
         self._equations, self.state, self.points, self.time = equations, state, points, time
         self.mesh_velocity = mesh_velocity
-        self._rate, self._advective, self._order = rate, advective, order
-        self.linear = advective is not None or not equations.convecting
+        self._rate, self._expected, self._order = rate, expected, order
+        self.linear = linear or not equations.convecting
         self.converged = False
         self._share = 1.0  # of the convection
         self._load = self._external(history)
         self._matrix: Array | None = None
         self._factor: Solver | None = None
-        self._unknowns = np.concatenate([state.velocity.ravel(), state.pressure])
+        self._unknowns = np.concatenate([expected.ravel(), state.pressure])
         self._residual: Array | None = None
 
     def continue_from(self, other: FluidStep) -> None:
@@ -132,6 +137,15 @@ class FluidStep:
         for (a, b), block in zip(((0, 0), (0, 1), (1, 0), (1, 1)), blocks, strict=True):
             space.add(A, a, b, block)
 
+    def _self_convection(self, velocity: Array) -> Array:
+        """Element load vectors of ∫ ρ (u·∇u)·v for a nodal velocity."""
+        equations, space = self._equations, self._equations.space
+        geometry, dNx, dNy = equations.geometry(self.points)
+        local = velocity[space.velocity_cells]
+        u, gradient = space.velocity.N @ local, kernel.velocity_gradient(dNx, dNy, local)
+        density = equations.fluid.density * (gradient @ u[..., None])[..., 0]
+        return space.local_vector(kernel.load(space.velocity.N, geometry.weights, density))
+
     def solve(self, interface: Array, *, max_iterations: int | None = None) -> tuple[Array, Array]:
         """Solve the step for a velocity of the interface nodes.
 
@@ -172,11 +186,13 @@ class FluidStep:
         equations = self._equations
         if self._factor is None or self._matrix is None:
             self._matrix = equations.constant_matrices(self.points, self._rate)
-            if self._advective is None:
+            if not equations.convecting:
                 self._factor = equations.stokes_factor(self.points, self._rate)
             else:
                 self._matrix = self._matrix.copy()
-                self._convection(self._matrix, self._advective)
+                self._convection(self._matrix, self._expected - self.mesh_velocity)
+                self._reaction(self._matrix, self._expected)
+                self._load = self._load + self._self_convection(self._expected)
                 equations.counts.assemblies += 1
                 self._factor = equations.system(self.points).factorise(self._matrix)
                 equations.counts.factorisations += 1
@@ -304,6 +320,12 @@ class FluidStep:
         """Element residuals f - A u, shape (e, k)."""
         local = unknowns[self._equations.space.dofs]
         return np.asarray(self._load - (A @ local[:, :, None])[:, :, 0])
+
+    def departure(self) -> float:
+        """Largest difference of the velocity from what a linear step expected, relative to the largest velocity."""
+        velocity = self._unknowns[: self._expected.size].reshape(-1, 2)
+        largest = float(np.abs(velocity).max(initial=0.0))
+        return float(np.abs(velocity - self._expected).max(initial=0.0)) / largest if largest else 0.0
 
     def reaction(self) -> Array:
         """Nodal momentum residual of the last solution, shape (n, 2): the force of the boundary on the fluid."""
