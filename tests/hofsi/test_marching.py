@@ -17,7 +17,7 @@ from hofsi.quantities import evaluators
 from hofsi.records import StepRecord
 from hofsi.simulate import simulate
 
-MODES = ("newton", "picard", "extrapolated")
+MODES = ("newton", "picard", "linearised", "extrapolated")
 MOVERS = ("pseudo-solid", "angle-optimisation")
 
 # d ──────────── c

@@ -106,7 +106,7 @@ def test_free_vertices_of_the_examples(scene: Path) -> None:
 
 
 @pytest.mark.parametrize("geometry", ["extrapolated", "implicit"])
-@pytest.mark.parametrize("convection", [None, "newton", "picard", "extrapolated"])
+@pytest.mark.parametrize("convection", [None, "newton", "picard", "linearised", "extrapolated"])
 def test_promised_iterations_of_a_coupled_run(read_changed: Read, convection: str | None, geometry: str) -> None:
     given = "" if convection is None else f'\nconvection = "{convection}"'
     case = read_changed(

@@ -135,7 +135,9 @@ class Flows:
         for size in sizes:
             time, made = time + size, [size, *made]
             points = state.points[0] if position is None else position(time)
-            step = solver.begin_step(state, points, made, time, linear=linear)
+            step = solver.begin_step(
+                state, points, made, time, linear=linear, newton=solver.fluid.convection != "extrapolated"
+            )
             step.solve(NOBODY)
             state = step.accept()
         return state

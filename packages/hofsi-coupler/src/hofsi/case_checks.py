@@ -157,7 +157,7 @@ def _check_steady(case: Case) -> None:
                 "instead of steady = true",
                 expression.place,
             )
-    if case.fluid and case.fluid.convection == "extrapolated":
+    if case.fluid and case.fluid.convection in ("linearised", "extrapolated"):
         raise CaseError(
             'a steady flow has no earlier steps to extrapolate from; expected "newton" or "picard"', "fluid.convection"
         )

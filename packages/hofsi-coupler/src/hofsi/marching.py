@@ -82,10 +82,11 @@ class FluidMarch:
         mesh = self._mesh(state.mesh, time)
         with self._clock.phase("fluid"):
             fluid, points = state.fluid, mesh.mesh.points
-            linear = self._solver.fluid.extrapolates(None)
-            step = self._solver.begin_step(fluid, points, steps, time, linear=linear)
+            linear = self._solver.fluid.is_linear(None)
+            newton = not self._solver.fluid.merely_convects(None)
+            step = self._solver.begin_step(fluid, points, steps, time, linear=linear, newton=newton)
             step.solve(np.zeros((0, 2)))
-            if step.linear and self._solver.convecting and step.departure() > _UNEXPECTED:
+            if linear and newton and self._solver.convecting and step.departure() > _UNEXPECTED:
                 rough, step = step, self._solver.begin_step(fluid, points, steps, time, linear=False)
                 step.continue_from(rough)
                 step.solve(np.zeros((0, 2)))

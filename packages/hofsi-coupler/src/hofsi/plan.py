@@ -146,7 +146,7 @@ def _iterates(case: Case, fluid: Fluid) -> bool:
     """Whether the fluid's equations are nonlinear."""
     if fluid.model == "stokes":
         return False
-    return isinstance(case.time, Steady) or not fluid.extrapolates(case.coupling if case.solids else None)
+    return isinstance(case.time, Steady) or not fluid.is_linear(case.coupling if case.solids else None)
 
 
 def _meshes(case: Case) -> _Meshes:
@@ -209,7 +209,9 @@ def _fluid(case: Case, meshes: _Meshes) -> Iterator[Item]:
         method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
         yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}")
     elif case.fluid.model == "navier-stokes":
-        yield Item("convection", "linearised about the velocity extrapolated to second order: linear steps")
+        convects = case.fluid.merely_convects(case.coupling if case.solids else None)
+        how = "convection with" if convects else "Newton's linearisation about"
+        yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps")
     solver = {
         "direct": f"sparse LU of {kept} unknowns after static condensation",
         "amg": f"FGMRES with algebraic multigrid to a relative residual of {case.linear.tolerance:g}",
@@ -344,7 +346,8 @@ def _without_iteration(case: Case) -> Iterator[Item]:
             yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
         elif not _iterates(case, fluid):
             meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
-            unless = "" if case.solids else ", unless the flow changes at once, as after an impulsive start"
+            again = not case.solids and not fluid.merely_convects(None)
+            unless = ", unless the flow changes at once, as after an impulsive start" if again else ""
             yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}{unless}")
     if case.linear.solver == "direct":
         yield Item("algebraic multigrid", 'linear.solver = "direct"')

@@ -36,9 +36,9 @@ class Fluid:
     boundaries : tuple of FluidCondition
         Exactly one for each outer edge that is not shared with a solid.
     model : {"navier-stokes", "stokes"}
-    convection : {"auto", "newton", "picard", "extrapolated"}
-        How a step treats convection; "extrapolated" linearises about the velocity that the last steps let expect.
-        "auto" leaves the choice to the solver.
+    convection : {"auto", "newton", "picard", "linearised", "extrapolated"}
+        How a step treats convection. With u expected from the last steps, "linearised" is Newton's linearisation about
+        it, with "extrapolated" it merely convects. "auto" leaves the choice to the solver.
     body_force : pair of Expression of x, y, t, or None
         Per unit volume, gravity included; None is zero.
     initial_velocity : pair of Expression of x, y, or None
@@ -51,13 +51,13 @@ class Fluid:
     blocks: tuple[str, ...]
     boundaries: tuple[FluidCondition, ...]
     model: Literal["navier-stokes", "stokes"] = "navier-stokes"
-    convection: Literal["auto", "newton", "picard", "extrapolated"] = "auto"
+    convection: Literal["auto", "newton", "picard", "linearised", "extrapolated"] = "auto"
     body_force: VectorExpression | None = None
     initial_velocity: VectorExpression | None = None
     place: str = "fluid"
 
-    def extrapolates(self, coupling: CouplingSettings | None) -> bool:
-        """Whether a time step extrapolates the convecting velocity, so that its equations are linear.
+    def is_linear(self, coupling: CouplingSettings | None) -> bool:
+        """Whether the equations of a time step are linear: the last steps tell what velocity to expect.
 
         Parameters
         ----------
@@ -66,7 +66,11 @@ class Fluid:
         """
         if self.convection == "auto":
             return coupling is None or coupling.geometry == "extrapolated"
-        return self.convection == "extrapolated"
+        return self.convection in ("linearised", "extrapolated")
+
+    def merely_convects(self, coupling: CouplingSettings | None) -> bool:
+        """Whether linear steps convect with the expected velocity, without Newton's term; "auto" does if coupled."""
+        return self.convection == "extrapolated" or (self.convection == "auto" and coupling is not None)
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ def read_fluid(table: Table, mesh: MeshScene, constants: Mapping[str, float]) ->
         blocks=block_groups(table, mesh, "fluid"),
         boundaries=tuple(read_fluid_condition(entry, mesh, constants) for entry in table.tables("boundary")),
         model=choice(table, "model", ("navier-stokes", "stokes"), "navier-stokes"),
-        convection=choice(table, "convection", ("newton", "picard", "extrapolated"), "auto"),
+        convection=choice(table, "convection", ("newton", "picard", "linearised", "extrapolated"), "auto"),
         body_force=_body_force(table, constants, density),
         initial_velocity=_initial(table, "initial_velocity", constants),
         place=table.place,

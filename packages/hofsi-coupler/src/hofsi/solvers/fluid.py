@@ -29,7 +29,14 @@ class FluidSolver(FluidEquations):
         return FluidState((velocity,), np.zeros(self.space.pressure_count), (points,), np.zeros(points.shape), time)
 
     def begin_step(
-        self, state: FluidState, points: Array, steps: Sequence[float], time: float, *, linear: bool
+        self,
+        state: FluidState,
+        points: Array,
+        steps: Sequence[float],
+        time: float,
+        *,
+        linear: bool,
+        newton: bool = True,
     ) -> FluidStep:
         """Start a time step that ends at ``time`` on a mesh with node positions ``points``.
 
@@ -43,7 +50,9 @@ class FluidSolver(FluidEquations):
         time : float
             At the end of the step.
         linear : bool
-            Linearise about the extrapolated velocity (second order).
+            Expect the velocity extrapolated from the last steps (second order), so that the step is linear.
+        newton : bool, optional
+            Whether a linear step is Newton's linearisation about that velocity; otherwise it merely convects.
         """
         order = min(2, len(state.velocities), len(steps))
         c = bdf_weights(steps[:order])
@@ -59,9 +68,11 @@ class FluidSolver(FluidEquations):
             self.boundary.stick(relative, points, mesh_velocity)
             expected = relative + mesh_velocity
         rate = float(c[0])
-        return FluidStep(self, state, points, mesh_velocity, rate, history, time, expected, order, linear=linear)
+        return FluidStep(
+            self, state, points, mesh_velocity, rate, history, time, expected, order, linear=linear, newton=newton
+        )
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
         """Start a search for the steady state on a mesh at rest."""
         zero = np.zeros(points.shape)
-        return FluidStep(self, state, points, zero, 0.0, zero, state.time, state.velocity, 0, linear=False)
+        return FluidStep(self, state, points, zero, 0.0, zero, state.time, state.velocity, 0, linear=False, newton=True)

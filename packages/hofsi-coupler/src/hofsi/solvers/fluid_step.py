@@ -82,11 +82,12 @@ class FluidStep:
         order: int,
         *,
         linear: bool,
+        newton: bool,
     ) -> None:
         self._equations, self.state, self.points, self.time = equations, state, points, time
         self.mesh_velocity = mesh_velocity
         self._rate, self._expected, self._order = rate, expected, order
-        self.linear = linear or not equations.convecting
+        self.linear, self._newton = linear or not equations.convecting, newton
         self.converged = False
         self._share = 1.0  # of the convection
         self._load = self._external(history)
@@ -191,8 +192,9 @@ class FluidStep:
             else:
                 self._matrix = self._matrix.copy()
                 self._convection(self._matrix, self._expected - self.mesh_velocity)
-                self._reaction(self._matrix, self._expected)
-                self._load = self._load + self._self_convection(self._expected)
+                if self._newton:
+                    self._reaction(self._matrix, self._expected)
+                    self._load = self._load + self._self_convection(self._expected)
                 equations.counts.assemblies += 1
                 self._factor = equations.system(self.points).factorise(self._matrix)
                 equations.counts.factorisations += 1
