@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from hofsi import case
 from hofsi.build import Problem
 from hofsi.records import CouplingRecord, State, StepRecord
+from hofsi.threads import one_thread
 
 __all__ = ["simulate"]
 
@@ -15,6 +16,8 @@ _STEPS = 4  # step sizes remembered, for multi-step schemes and predictors
 
 def simulate(problem: Problem) -> Iterator[StepRecord]:
     """Run a problem and yield every finished step; a steady problem yields one.
+
+    While a step is computed the BLAS works with one thread, see `hofsi.threads`.
 
     Parameters
     ----------
@@ -32,8 +35,10 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
         If a step does not succeed.
     """
     times = problem.case.time
+    alone = one_thread()
     if isinstance(times, case.Steady):
-        state, coupling = problem.march.steady(problem.march.initial(0.0))
+        with alone():
+            state, coupling = problem.march.steady(problem.march.initial(0.0))
         yield _record(1, 0.0, 0.0, state, coupling)
         return
     state = problem.march.initial(times.start)
@@ -41,7 +46,8 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
     for step in range(1, times.steps + 1):
         time, size = times.step(step)
         sizes = [size, *sizes][:_STEPS]
-        state, coupling = problem.march.step(state, sizes, time)
+        with alone():
+            state, coupling = problem.march.step(state, sizes, time)
         yield _record(step, time, size, state, coupling)
 
 
