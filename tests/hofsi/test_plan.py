@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,13 @@ def _run(case: Case) -> Problem:
     for _ in simulate(problem):
         pass
     return problem
+
+
+def _counts_of_last_step(case: Case) -> dict[str, int]:
+    """What the fluid did in the last step: the first ones, from rest, may need more than the others."""
+    problem = build(case)
+    counts = [asdict(problem.counts["fluid"]) for _ in simulate(problem)]
+    return {name: count - counts[-2][name] for name, count in counts[-1].items()}
 
 
 @pytest.mark.parametrize("order", [2, 3, 5])
@@ -112,14 +120,14 @@ def test_promised_iterations_of_a_coupled_run(read_changed: Read, convection: st
     case = read_changed(
         ("viscosity = 0.01", f"viscosity = 0.1{given}"),
         ("[coupling]", f'[coupling]\ngeometry = "{geometry}"'),
-        SHORT,
+        ("dt = 0.1\nend = 2.0", "dt = 0.1\nsteps = 6"),
     )
-    planned, counts = plan(case), _run(case).counts["fluid"]
+    planned, counts = plan(case), _counts_of_last_step(case)
     linear = "fluid's Newton iteration" in _names(planned.skipped)
-    assert linear == (counts.iterations == 0)
-    assert ("one factorisation a step, however many" in " ".join(planned.lines())) == (counts.factorisations == 3)
+    assert linear == (counts["iterations"] == 0)
+    assert ("one factorisation a step, however many" in " ".join(planned.lines())) == (counts["factorisations"] == 1)
     one_mesh = _built(planned, "geometry").endswith("one fluid mesh a step")
-    assert one_mesh == (counts.geometries == 3)
+    assert one_mesh == (counts["geometries"] == 1)
 
 
 @pytest.mark.parametrize(("convection", "linear"), [("", True), ('convection = "newton"', False)])

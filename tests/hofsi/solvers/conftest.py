@@ -129,15 +129,19 @@ class Flows:
         return step.accept()
 
     @staticmethod
+    def convection(solver, linear):
+        """The solver's own, where that is linear or not as asked for."""
+        own, ways = solver.fluid.convection, ("linearised", "extrapolated") if linear else ("newton", "picard")
+        return own if own in ways else ways[0]
+
+    @staticmethod
     def march(solver, state, sizes, position=None, *, linear=False, steps=()):
         """Steps of the given sizes; ``position`` maps a time to node positions, ``steps`` are sizes made before."""
         time, made = state.time, list(steps)
         for size in sizes:
             time, made = time + size, [size, *made]
             points = state.points[0] if position is None else position(time)
-            step = solver.begin_step(
-                state, points, made, time, linear=linear, newton=solver.fluid.convection != "extrapolated"
-            )
+            step = solver.begin_step(state, points, made, time, convection=Flows.convection(solver, linear))
             step.solve(NOBODY)
             state = step.accept()
         return state

@@ -63,7 +63,7 @@ def test_mesh_velocity_is_the_backward_difference_of_the_positions(flows):
         np.zeros(mesh.points.shape),
         0.25,
     )
-    step = solver.begin_step(old, wobble(mesh.points, 0.35), sizes, 0.35, linear=False)
+    step = solver.begin_step(old, wobble(mesh.points, 0.35), sizes, 0.35, convection="newton")
     a, b, c = (wobble(mesh.points, t) for t in (0.35, 0.25, 0.0))
     # Derivative at 0.35 of the parabola through the three positions, by divided differences.
     first, second = (a - b) / 0.1, (b - c) / 0.25
@@ -464,7 +464,7 @@ def channel(flows, order=2, columns=3, rows=2, profile=Poiseuille.profile, **flu
 
 
 def test_a_mesh_at_rest_is_prepared_once(flows):
-    solver = channel(flows)
+    solver = channel(flows, initial_velocity=(Poiseuille.profile, "0"))
     flows.march(solver, solver.initial_state(), (0.1,) * 5, linear=True)
     counts = solver.counts
     assert counts.geometries == 1
@@ -485,7 +485,7 @@ def test_stokes_flow_on_a_mesh_at_rest_is_factorised_once_for_each_step_size(flo
 
 
 def test_a_moving_mesh_is_prepared_once_a_step(flows):
-    solver = channel(flows)
+    solver = channel(flows, initial_velocity=(Poiseuille.profile, "0"))
     X = solver.mesh.points
     flows.march(solver, solver.initial_state(), (0.1,) * 3, lambda t: X * [1.0 + 0.1 * t, 1.0], linear=True)
     assert (solver.counts.geometries, solver.counts.factorisations) == (3, 3)
@@ -496,12 +496,29 @@ def test_a_linear_step_is_factorised_once_however_often_it_is_solved(flows):
     top = mesh.edge_nodes("top")
     conditions = [case.NoSlip(("left", "bottom")), case.DoNothing(("right",))]
     solver = flows.solver(mesh, conditions, interface=top)
-    step = solver.begin_step(solver.initial_state(), mesh.points, (0.1,), 0.1, linear=True)
+    step = solver.begin_step(solver.initial_state(), mesh.points, (0.1,), 0.1, convection="extrapolated")
     results = [step.solve(np.full((len(top), 2), value))[0] for value in (1.0, 3.0)]
     assert (solver.counts.factorisations, solver.counts.solves) == (1, 2)
     np.testing.assert_allclose(results[1], 3.0 * results[0], rtol=0.0, atol=1e-12)
     np.testing.assert_array_equal(results[0][top], 1.0)  # the interface comes before walls and openings
     assert np.abs(results[0]).max() >= 1.0
+
+
+def test_a_linearised_step_far_from_what_was_expected_is_linearised_about_what_newtons_method_finds(flows):
+    mesh = flows.grid(3)
+    top = mesh.edge_nodes("top")
+    conditions = [case.NoSlip(("left", "bottom")), case.DoNothing(("right",))]
+    expected, found = (flows.solver(mesh, conditions, interface=top, viscosity=0.05) for _ in range(2))
+    moved, further = np.full((len(top), 2), 1.0), np.full((len(top), 2), 1.01)
+    step = expected.begin_step(expected.initial_state(), mesh.points, (0.1,), 0.1, convection="linearised")
+    newton = found.begin_step(found.initial_state(), mesh.points, (0.1,), 0.1, convection="newton")
+    gaps = [np.abs(step.solve(d)[0] - newton.solve(d)[0]).max() for d in (moved, further)]
+    assert gaps[0] < 1e-9  # both are Newton's solution
+    assert 1e-8 < gaps[1] < 2e-4  # of second order in the difference of 1 %
+    made = expected.counts.factorisations
+    step.solve(moved)
+    assert expected.counts.factorisations == made  # once more after Newton's, then no more
+
 
 
 @pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
@@ -637,7 +654,7 @@ def test_newton_converges_quadratically(flows):
 
 def test_a_step_that_was_not_solved_has_no_reaction(flows):
     solver = channel(flows)
-    step = solver.begin_step(solver.initial_state(), solver.mesh.points, (0.1,), 0.1, linear=True)
+    step = solver.begin_step(solver.initial_state(), solver.mesh.points, (0.1,), 0.1, convection="linearised")
     with pytest.raises(ValueError, match="has not been solved"):
         step.reaction()
 

@@ -64,7 +64,8 @@ def test_unsteady_flow_with_slip_walls_and_an_interface():
         held = np.zeros((len(solver.boundary.interface), 2))
         for k in range(3):
             made.insert(0, 0.005)
-            step = solver.begin_step(state, solver.mesh.points, made, 0.005 * (k + 1), linear=k > 0)
+            convection = "linearised" if k else "newton"
+            step = solver.begin_step(state, solver.mesh.points, made, 0.005 * (k + 1), convection=convection)
             step.solve(held)
             step.solve(held + 0.1)  # again, with the same preconditioner
             state = step.accept()
@@ -134,7 +135,7 @@ def test_laplacian_is_kept_while_the_mesh_stands_and_may_be_iterated(flows, monk
     assert len(made) == 1
     assert not made[0].factorised
     moved = mesh.points * [1.0, 1.1]
-    solver[1].begin_step(state, moved, (0.1,), 0.1, linear=True).solve(np.zeros((0, 2)))
+    solver[1].begin_step(state, moved, (0.1,), 0.1, convection="linearised").solve(np.zeros((0, 2)))
     assert len(made) == 2
 
 

@@ -20,8 +20,6 @@ Array = NDArray[np.float64]
 
 __all__ = ["FluidMarch", "March", "SolidMarch"]
 
-_UNEXPECTED = 0.25  # of the velocity: a flow further from what was expected needs more than one linearisation
-
 
 class March(Protocol):
     """Advances a state; the time loop knows nothing else."""
@@ -82,14 +80,9 @@ class FluidMarch:
         mesh = self._mesh(state.mesh, time)
         with self._clock.phase("fluid"):
             fluid, points = state.fluid, mesh.mesh.points
-            linear = self._solver.fluid.is_linear(None)
-            newton = not self._solver.fluid.merely_convects(None)
-            step = self._solver.begin_step(fluid, points, steps, time, linear=linear, newton=newton)
+            convection = self._solver.fluid.convection_of_steps(None)
+            step = self._solver.begin_step(fluid, points, steps, time, convection=convection)
             step.solve(np.zeros((0, 2)))
-            if linear and newton and self._solver.convecting and step.departure() > _UNEXPECTED:
-                rough, step = step, self._solver.begin_step(fluid, points, steps, time, linear=False)
-                step.continue_from(rough)
-                step.solve(np.zeros((0, 2)))
             return State(fluid=step.accept(), mesh=mesh), None
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:

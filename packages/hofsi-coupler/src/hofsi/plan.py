@@ -20,6 +20,7 @@ from hofsi.case import (
     AngleOptimisationSettings,
     BarrierSettings,
     Case,
+    Convection,
     Fluid,
     PseudoSolidSettings,
     RuleSettings,
@@ -142,11 +143,16 @@ def _moves(case: Case) -> bool:
     return case.fluid is not None and bool(case.solids or case.motions)
 
 
+def _convection(case: Case, fluid: Fluid) -> Convection:
+    """How time steps treat convection."""
+    return fluid.convection_of_steps(case.coupling if case.solids else None)
+
+
 def _iterates(case: Case, fluid: Fluid) -> bool:
     """Whether the fluid's equations are nonlinear."""
     if fluid.model == "stokes":
         return False
-    return isinstance(case.time, Steady) or not fluid.is_linear(case.coupling if case.solids else None)
+    return isinstance(case.time, Steady) or _convection(case, fluid) in ("newton", "picard")
 
 
 def _meshes(case: Case) -> _Meshes:
@@ -209,7 +215,7 @@ def _fluid(case: Case, meshes: _Meshes) -> Iterator[Item]:
         method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
         yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}")
     elif case.fluid.model == "navier-stokes":
-        convects = case.fluid.merely_convects(case.coupling if case.solids else None)
+        convects = _convection(case, case.fluid) == "extrapolated"
         how = "convection with" if convects else "Newton's linearisation about"
         yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps")
     solver = {
@@ -346,7 +352,7 @@ def _without_iteration(case: Case) -> Iterator[Item]:
             yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
         elif not _iterates(case, fluid):
             meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
-            again = not case.solids and not fluid.merely_convects(None)
+            again = _convection(case, fluid) == "linearised"
             unless = ", unless the flow changes at once, as after an impulsive start" if again else ""
             yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}{unless}")
     if case.linear.solver == "direct":

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hofsi.motion import MeshState
-    from hofsi.solvers.fluid import FluidState
+    from hofsi.solvers.fluid_state import FluidState
     from hofsi.solvers.solid import SolidState
 
 __all__ = ["CouplingRecord", "State", "StepRecord"]

@@ -24,6 +24,7 @@ from hofsi.case.conditions import (
     Velocity,
 )
 from hofsi.case.materials import (
+    Convection,
     Fluid,
     Motion,
     Solid,
@@ -62,6 +63,7 @@ __all__ = [
     "AngleOptimisationSettings",
     "BarrierSettings",
     "Case",
+    "Convection",
     "CouplingSettings",
     "Displacement",
     "DoNothing",

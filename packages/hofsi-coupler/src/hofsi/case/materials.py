@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from hofsi.case.settings import CouplingSettings
 
 __all__ = [
+    "Convection",
     "Fluid",
     "Motion",
     "Solid",
@@ -19,6 +20,7 @@ __all__ = [
 
 
 VectorExpression: TypeAlias = "tuple[Expression, Expression]"
+Convection: TypeAlias = Literal["newton", "picard", "linearised", "extrapolated"]
 
 
 @dataclass(frozen=True)
@@ -51,26 +53,22 @@ class Fluid:
     blocks: tuple[str, ...]
     boundaries: tuple[FluidCondition, ...]
     model: Literal["navier-stokes", "stokes"] = "navier-stokes"
-    convection: Literal["auto", "newton", "picard", "linearised", "extrapolated"] = "auto"
+    convection: Convection | Literal["auto"] = "auto"
     body_force: VectorExpression | None = None
     initial_velocity: VectorExpression | None = None
     place: str = "fluid"
 
-    def is_linear(self, coupling: CouplingSettings | None) -> bool:
-        """Whether the equations of a time step are linear: the last steps tell what velocity to expect.
+    def convection_of_steps(self, coupling: CouplingSettings | None) -> Convection:
+        """How a time step treats convection, with "auto" resolved.
 
         Parameters
         ----------
         coupling : CouplingSettings or None
             None without coupling. If every coupling iteration has a mesh of its own, "auto" iterates on convection too.
         """
-        if self.convection == "auto":
-            return coupling is None or coupling.geometry == "extrapolated"
-        return self.convection in ("linearised", "extrapolated")
-
-    def merely_convects(self, coupling: CouplingSettings | None) -> bool:
-        """Whether linear steps convect with the expected velocity, without Newton's term; "auto" does if coupled."""
-        return self.convection == "extrapolated" or (self.convection == "auto" and coupling is not None)
+        if self.convection != "auto":
+            return self.convection
+        return "linearised" if coupling is None or coupling.geometry == "extrapolated" else "newton"
 
 
 @dataclass(frozen=True)

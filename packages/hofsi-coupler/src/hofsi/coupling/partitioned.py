@@ -108,13 +108,12 @@ class CoupledMarch:
         predicted = predict(state.interface, steps, self._settings.predictor)
         solid_step = self._solid.begin_step(solid, steps, time)
         implicit = self._settings.geometry == "implicit"
-        linear = self._fluid.fluid.is_linear(self._settings)
-        newton = not self._fluid.fluid.merely_convects(self._settings)
+        convection = self._fluid.fluid.convection_of_steps(self._settings)
 
         def begin(d: Array, before: FluidStep | None) -> tuple[FluidStep, MeshState]:
             moved = self._move(mesh, d, time)
             with self._clock.phase("fluid"):
-                step = self._fluid.begin_step(fluid, moved.mesh.points, steps, time, linear=linear, newton=newton)
+                step = self._fluid.begin_step(fluid, moved.mesh.points, steps, time, convection=convection)
                 if before is not None:
                     step.continue_from(before)
                 return step, moved

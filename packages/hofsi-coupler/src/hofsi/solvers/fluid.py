@@ -7,8 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hofsi.case import Convection
 from hofsi.solvers.fluid_equations import FluidEquations
-from hofsi.solvers.fluid_step import FluidState, FluidStep
+from hofsi.solvers.fluid_state import FluidState
+from hofsi.solvers.fluid_step import FluidStep
 from hofsi.timestepping.schemes import bdf_weights, extrapolation_weights
 
 Array = NDArray[np.float64]
@@ -35,8 +37,7 @@ class FluidSolver(FluidEquations):
         steps: Sequence[float],
         time: float,
         *,
-        linear: bool,
-        newton: bool = True,
+        convection: Convection,
     ) -> FluidStep:
         """Start a time step that ends at ``time`` on a mesh with node positions ``points``.
 
@@ -49,10 +50,8 @@ class FluidSolver(FluidEquations):
             This step's size and those before it, newest first.
         time : float
             At the end of the step.
-        linear : bool
-            Expect the velocity extrapolated from the last steps (second order), so that the step is linear.
-        newton : bool, optional
-            Whether a linear step is Newton's linearisation about that velocity; otherwise it merely convects.
+        convection : {"newton", "picard", "linearised", "extrapolated"}
+            The last two expect the velocity extrapolated from the last steps (second order): the step is linear.
         """
         order = min(2, len(state.velocities), len(steps))
         c = bdf_weights(steps[:order])
@@ -63,16 +62,17 @@ class FluidSolver(FluidEquations):
             mesh_velocity = np.tensordot(c, np.stack(moving), axes=1)
         e = extrapolation_weights(steps, order - 1)
         expected = np.tensordot(e, np.stack(state.velocities[:order]), axes=1)
-        if linear:
+        if convection in ("linearised", "extrapolated"):
             relative = expected - mesh_velocity
             self.boundary.stick(relative, points, mesh_velocity)
             expected = relative + mesh_velocity
         rate = float(c[0])
         return FluidStep(
-            self, state, points, mesh_velocity, rate, history, time, expected, order, linear=linear, newton=newton
+            self, state, points, mesh_velocity, rate, history, time, expected, order, convection
         )
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
         """Start a search for the steady state on a mesh at rest."""
         zero = np.zeros(points.shape)
-        return FluidStep(self, state, points, zero, 0.0, zero, state.time, state.velocity, 0, linear=False, newton=True)
+        iteration: Convection = "picard" if self.fluid.convection == "picard" else "newton"
+        return FluidStep(self, state, points, zero, 0.0, zero, state.time, state.velocity, 0, iteration)

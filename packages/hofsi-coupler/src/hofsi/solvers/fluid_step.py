@@ -1,66 +1,39 @@
-"""One step of a fluid, or its steady state, on one mesh."""
+"""One step of a fluid, or its steady state, on one mesh: how it is solved."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hofsi.case import Convection
 from hofsi.errors import LinearSolverError, NewtonError
 from hofsi.fem.assembly import assemble_vector
-from hofsi.kernels import navier_stokes as kernel
 from hofsi.linear.solver import Solver
 from hofsi.solvers.continuation import approach
 from hofsi.solvers.fluid_equations import FluidEquations
-from hofsi.solvers.fluid_system import FluidSystem
+from hofsi.solvers.fluid_operator import FluidOperator
+from hofsi.solvers.fluid_state import FluidState
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
-__all__ = ["FluidState", "FluidStep"]
+__all__ = ["FluidStep"]
 
 _ON_THE_WAY = 1e-6  # tolerance of the problems that continuation solves on the way
 _ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else is left of a flow without stress
 _FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
-
-
-@dataclass(frozen=True)
-class FluidState:
-    """Fluid at the end of a step.
-
-    Attributes
-    ----------
-    velocities : tuple of ndarray, shape (n, 2)
-        Newest first; as many as the time scheme needs.
-    pressure : ndarray, shape (m,)
-    points : tuple of ndarray, shape (n, 2)
-        Node positions at the same times.
-    reaction : ndarray, shape (n, 2)
-        Nodal momentum residual: what the boundary does to the fluid where it holds it; minus it is the load on a body.
-    time : float
-    """
-
-    velocities: tuple[Array, ...]
-    pressure: Array
-    points: tuple[Array, ...]
-    reaction: Array
-    time: float
-
-    @property
-    def velocity(self) -> Array:
-        """Newest velocity."""
-        return self.velocities[0]
+_UNEXPECTED = 0.25  # of the velocity: a flow further from what was expected needs more than one linearisation
 
 
 class FluidStep:
     """One step, or the steady problem, on one mesh; made by `FluidSolver`.
 
-    A linear step is Newton's linearisation about the velocity that the last steps let expect, which is of second order
-    in the step size: with δ the error of that velocity it leaves out ρ δ·∇δ, of fourth order. (Merely to convect with
-    the expected velocity leaves out ρ δ·∇u, of second order, which feeds energy into fast oscillations.) It is
-    assembled and factorised once, however often it is solved. A steady problem that Newton's method does not solve
-    from where it starts is approached from Stokes flow, with more and more of the convection.
+    A "linearised" step is Newton's linearisation about the velocity that the last steps let expect, which is of second
+    order in the step size: with δ the error of that velocity it leaves out ρ δ·∇δ, of fourth order. An "extrapolated"
+    one merely convects with the expected velocity, which leaves out ρ δ·∇u, of second order, and feeds energy into fast
+    oscillations. Both are assembled and factorised once, however often they are solved. If the first solution of a
+    linearised step is far from what was expected, as after an impulsive start, Newton's method goes on from it, and
+    further solutions are linearised about where it ends. A steady problem that Newton's method does not solve from
+    where it starts is approached from Stokes flow, with more and more of the convection.
 
     Attributes
     ----------
@@ -80,72 +53,25 @@ class FluidStep:
         time: float,
         expected: Array,
         order: int,
-        *,
-        linear: bool,
-        newton: bool,
+        convection: Convection,
     ) -> None:
         self._equations, self.state, self.points, self.time = equations, state, points, time
         self.mesh_velocity = mesh_velocity
         self._rate, self._expected, self._order = rate, expected, order
-        self.linear, self._newton = linear or not equations.convecting, newton
+        self.linear = convection in ("linearised", "extrapolated") or not equations.convecting
+        self._convection: Convection = convection
         self.converged = False
-        self._share = 1.0  # of the convection
-        self._load = self._external(history)
+        self._operator = FluidOperator(equations, points, mesh_velocity, rate, history, time)
         self._matrix: Array | None = None
         self._factor: Solver | None = None
+        self._linear_load: Array | None = None
+        self._settled = convection != "linearised" or not equations.convecting
         self._unknowns = np.concatenate([expected.ravel(), state.pressure])
         self._residual: Array | None = None
 
     def continue_from(self, other: FluidStep) -> None:
         """Start the solution from that of another step, for example on the mesh of the last coupling iteration."""
         self._unknowns = other._unknowns
-
-    def _external(self, history: Array) -> Array:
-        """Element load vectors of inertia, body force and given tractions."""
-        equations, space = self._equations, self._equations.space
-        geometry, _, _ = equations.geometry(self.points)
-        force = equations.fluid.body_force
-        f = np.zeros(space.dofs.shape)
-        if self._rate or force is not None:
-            density = np.zeros((*geometry.weights.shape, 2))
-            if self._rate:
-                density -= equations.fluid.density * (space.velocity.N @ history[space.velocity_cells])
-            if force is not None:
-                x, y = geometry.x[..., 0], geometry.x[..., 1]
-                for a in range(2):
-                    density[..., a] += force[a].evaluate(x=x, y=y, t=self.time)
-            f = space.local_vector(kernel.load(space.velocity.N, geometry.weights, density))
-        equations.boundary.add_loads(f, self.points, self.time)
-        return f
-
-    def _convection(self, A: Array, advective: Array) -> None:
-        """Add ∫ ρ (a·∇u)·v for a nodal advective velocity (n, 2)."""
-        space = self._equations.space
-        geometry, dNx, dNy = self._equations.geometry(self.points)
-        a = space.velocity.N @ advective[space.velocity_cells]
-        density = self._share * self._equations.fluid.density
-        block = kernel.transport(space.velocity.N, dNx, dNy, geometry.weights, 0.0, density, a)
-        space.add(A, 0, 0, block)
-        space.add(A, 1, 1, block)
-
-    def _reaction(self, A: Array, velocity: Array) -> None:
-        """Add Newton's term ∫ ρ (δu·∇u)·v."""
-        space = self._equations.space
-        geometry, dNx, dNy = self._equations.geometry(self.points)
-        gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
-        density = self._share * self._equations.fluid.density
-        blocks = kernel.reaction(space.velocity.N, geometry.weights, density, gradient)
-        for (a, b), block in zip(((0, 0), (0, 1), (1, 0), (1, 1)), blocks, strict=True):
-            space.add(A, a, b, block)
-
-    def _self_convection(self, velocity: Array) -> Array:
-        """Element load vectors of ∫ ρ (u·∇u)·v for a nodal velocity."""
-        equations, space = self._equations, self._equations.space
-        geometry, dNx, dNy = equations.geometry(self.points)
-        local = velocity[space.velocity_cells]
-        u, gradient = space.velocity.N @ local, kernel.velocity_gradient(dNx, dNy, local)
-        density = equations.fluid.density * (gradient @ u[..., None])[..., 0]
-        return space.local_vector(kernel.load(space.velocity.N, geometry.weights, density))
 
     def solve(self, interface: Array, *, max_iterations: int | None = None) -> tuple[Array, Array]:
         """Solve the step for a velocity of the interface nodes.
@@ -175,7 +101,7 @@ class FluidStep:
         enclosed = self._equations.enclosed(self.points)
         if enclosed:
             geometry, flux = self._equations.geometry(self.points)[0], self._equations.pressure_work(self.points)
-            enclosed.balance(self._load, velocity, geometry, flux, moving=bool(self.mesh_velocity.any()))
+            enclosed.balance(self._operator.load, velocity, geometry, flux, moving=bool(self.mesh_velocity.any()))
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found below
             unknowns = self._solve_linear(unknowns) if self.linear else self._solve_nonlinear(unknowns, max_iterations)
         if enclosed and self._residual is not None:
@@ -184,24 +110,39 @@ class FluidStep:
         return unknowns[:n].reshape(-1, 2), unknowns[n:]
 
     def _solve_linear(self, unknowns: Array) -> Array:
-        equations = self._equations
+        equations, operator = self._equations, self._operator
         if self._factor is None or self._matrix is None:
-            self._matrix = equations.constant_matrices(self.points, self._rate)
-            if not equations.convecting:
-                self._factor = equations.stokes_factor(self.points, self._rate)
-            else:
-                self._matrix = self._matrix.copy()
-                self._convection(self._matrix, self._expected - self.mesh_velocity)
-                if self._newton:
-                    self._reaction(self._matrix, self._expected)
-                    self._load = self._load + self._self_convection(self._expected)
-                equations.counts.assemblies += 1
-                self._factor = equations.system(self.points).factorise(self._matrix)
-                equations.counts.factorisations += 1
-        unknowns = unknowns + self._factor.solve(self._imbalance(self._matrix, unknowns))
+            self._matrix, self._factor = self._factorised()
+        load = operator.load if self._linear_load is None else operator.load + self._linear_load
+        unknowns = unknowns + self._factor.solve(operator.imbalance(self._matrix, unknowns, load))
         equations.counts.solves += 1
-        self._residual = self._imbalance(self._matrix, unknowns)
+        self._residual = operator.imbalance(self._matrix, unknowns, load)
         self.converged = True
+        return unknowns if self._settled else self._settle(unknowns)
+
+    def _factorised(self) -> tuple[Array, Solver]:
+        """Matrix of a linear step and its factors; sets what it adds to the load."""
+        equations, operator = self._equations, self._operator
+        if not equations.convecting:
+            return operator.without_convection(), equations.stokes_factor(self.points, self._rate)
+        A = operator.convecting_with(self._expected)
+        if self._convection == "linearised":
+            operator.add_reaction(A, self._expected)
+            self._linear_load = operator.self_convection(self._expected)
+        equations.counts.factorisations += 1
+        return A, equations.system(self.points).factorise(A)
+
+    def _settle(self, unknowns: Array) -> Array:
+        """Accept what the first linearisation gives, or go on with Newton's method and linearise about its result."""
+        self._settled = True
+        velocity = unknowns[: self._expected.size].reshape(-1, 2)
+        largest = float(np.abs(velocity).max(initial=0.0))
+        if float(np.abs(velocity - self._expected).max(initial=0.0)) <= _UNEXPECTED * largest:
+            return unknowns
+        settings = self._equations.nonlinear
+        unknowns = self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
+        self._expected = unknowns[: self._expected.size].reshape(-1, 2)
+        self._matrix, self._factor, self._linear_load = None, None, None
         return unknowns
 
     def _solve_nonlinear(self, unknowns: Array, max_iterations: int | None) -> Array:
@@ -218,16 +159,16 @@ class FluidStep:
         try:
             return approach(self._with_share, unknowns, failure, "of the convection")
         finally:
-            self._share = 1.0
+            self._operator.share = 1.0
 
     def _with_share(self, unknowns: Array, share: float) -> Array:
         """Solve with a share of the convection, roughly if it is not all."""
         equations, settings = self._equations, self._equations.nonlinear
-        self._share = share
+        self._operator.share = share
         equations.counts.continuation_steps += 1
         if share == 1.0:
             return self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
-        newton = equations.fluid.convection != "picard"
+        newton = self._convection != "picard"
         limit = min(_FEW, settings.max_iterations) if newton else settings.max_iterations
         rough = self._solve_newton(unknowns, limit, max(_ON_THE_WAY, settings.tolerance))
         self.converged = False
@@ -236,10 +177,10 @@ class FluidStep:
     def _solve_newton(self, unknowns: Array, limit: int, tolerance: float, *, stop: bool = False) -> Array:
         """At most some iterations; with ``stop``, ending there is not an error."""
         equations = self._equations
-        picard = equations.fluid.convection == "picard"
+        picard = self._convection == "picard"
         A, norm, scale = self._linearise(unknowns)
         for iteration in range(limit + 1):
-            if norm <= tolerance * scale or norm <= _ROUNDING * self._magnitude(A, unknowns):
+            if norm <= tolerance * scale or norm <= _ROUNDING * self._operator.magnitude(A, unknowns):
                 self.converged = True
                 return unknowns
             if not np.isfinite(norm):
@@ -253,9 +194,9 @@ class FluidStep:
                 break
             J = A.copy()
             if not picard:
-                self._reaction(J, unknowns[: 2 * equations.space.velocity_count].reshape(-1, 2))
+                self._operator.add_reaction(J, unknowns[: self._expected.size].reshape(-1, 2))
             factor = equations.system(self.points).factorise(J)
-            delta = factor.solve(self._imbalance(A, unknowns))
+            delta = factor.solve(self._operator.imbalance(A, unknowns))
             equations.counts.factorisations += 1
             equations.counts.solves += 1
             equations.counts.iterations += 1
@@ -283,51 +224,9 @@ class FluidStep:
 
     def _linearise(self, unknowns: Array) -> tuple[Array, float, float]:
         """Oseen matrices at a state, the norm of its residual and a scale to compare it with."""
-        equations = self._equations
-        velocity = unknowns[: 2 * equations.space.velocity_count].reshape(-1, 2)
-        A = equations.constant_matrices(self.points, self._rate).copy()
-        self._convection(A, velocity - self.mesh_velocity)
-        equations.counts.assemblies += 1
-        self._residual = self._imbalance(A, unknowns)
-        system = equations.system(self.points)
-        dofs, size = equations.space.dofs, equations.space.size
-        free = self._free_rows(system)
-        inner = np.abs(self._residual - self._load)
-        scale = assemble_vector(dofs, inner + np.abs(self._load), size)
-        residual = self._in_frames(assemble_vector(dofs, self._residual, size))
-        return A, float(np.linalg.norm(residual[free])), float(np.linalg.norm(scale)) or 1.0
-
-    def _magnitude(self, A: Array, unknowns: Array) -> float:
-        """Norm of |A| |u|: unlike the scale it does not vanish if the terms of every row cancel."""
-        space = self._equations.space
-        local = np.abs(unknowns)[space.dofs]
-        rows = (np.abs(A) @ local[:, :, None])[:, :, 0]
-        return float(np.linalg.norm(assemble_vector(space.dofs, rows, space.size)))
-
-    def _free_rows(self, system: FluidSystem) -> Index:
-        inner = system.dofs[:, system.boundary :].ravel()
-        return np.concatenate([system.unknowns, inner])
-
-    def _in_frames(self, vector: Array) -> Array:
-        """A global vector with the velocity part in the nodes' own frames."""
-        constraints = self._equations.boundary.constraints(self.points)
-        if constraints.rotated.size:
-            n = 2 * self._equations.space.velocity_count
-            pairs = vector[:n].reshape(-1, 2)
-            frames = constraints.frames[constraints.rotated]
-            pairs[constraints.rotated] = (frames.transpose(0, 2, 1) @ pairs[constraints.rotated][:, :, None])[:, :, 0]
-        return vector
-
-    def _imbalance(self, A: Array, unknowns: Array) -> Array:
-        """Element residuals f - A u, shape (e, k)."""
-        local = unknowns[self._equations.space.dofs]
-        return np.asarray(self._load - (A @ local[:, :, None])[:, :, 0])
-
-    def departure(self) -> float:
-        """Largest difference of the velocity from what a linear step expected, relative to the largest velocity."""
-        velocity = self._unknowns[: self._expected.size].reshape(-1, 2)
-        largest = float(np.abs(velocity).max(initial=0.0))
-        return float(np.abs(velocity - self._expected).max(initial=0.0)) / largest if largest else 0.0
+        A = self._operator.convecting_with(unknowns[: self._expected.size].reshape(-1, 2))
+        self._residual = self._operator.imbalance(A, unknowns)
+        return A, *self._operator.size(self._residual)
 
     def reaction(self) -> Array:
         """Nodal momentum residual of the last solution, shape (n, 2): the force of the boundary on the fluid."""
