@@ -1,0 +1,85 @@
+"""What a run builds of a fluid and of solids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hoblock.blocks import BlockStructure
+from hoblock.mesh import QuadMesh
+from hoblock.numbering import number_nodes
+from hoblock.quality import scaled_jacobian
+from hofsi.case import Case, Fluid, Solid
+from hofsi.plan.facts import convection_of_steps, counted, iterates
+from hofsi.plan.meshes import Meshes
+from hofsi.plan.report import Item
+
+__all__ = ["fluid_items", "solid_items"]
+
+_LAWS = {"linear": "linear elasticity", "st-venant-kirchhoff": "St. Venant–Kirchhoff"}
+_MODELS = {"navier-stokes": "Navier–Stokes", "stokes": "Stokes"}
+
+
+def _mesh(structure: BlockStructure, mesh: QuadMesh) -> str:
+    worst = float(scaled_jacobian(mesh).min())
+    return (
+        f"{counted(len(structure.topology.quads), 'block')}, {counted(len(mesh.cells), 'element')} of order "
+        f"{mesh.order}, {len(mesh.points)} nodes, worst scaled Jacobian {worst:.2f}"
+    )
+
+
+def inner_nodes(mesh: QuadMesh, order: int) -> int:
+    """Nodes of an order inside elements, which static condensation eliminates."""
+    return len(mesh.cells) * (order - 1) ** 2
+
+
+def fluid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
+    """The fluid, its mesh and how its equations are solved."""
+    if case.fluid is None or meshes.fluid is None:
+        return
+    structure, mesh = meshes.fluid
+    p, velocities = mesh.order, 2 * len(mesh.points)
+    pressures = number_nodes(mesh.corners, p - 1)[1]
+    kept = velocities + pressures - 2 * inner_nodes(mesh, p) - inner_nodes(mesh, p - 1)
+    yield Item("fluid mesh", _mesh(structure, mesh))
+    yield Item(
+        "fluid",
+        f"{_MODELS[case.fluid.model]}, ρ = {case.fluid.density:g}, μ = {case.fluid.viscosity:g}; "
+        f"{velocities} unknowns of velocity and {pressures} of pressure, given ones included",
+    )
+    if iterates(case, case.fluid):
+        method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
+        yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}")
+    elif case.fluid.model == "navier-stokes":
+        convects = convection_of_steps(case, case.fluid) == "extrapolated"
+        how = "convection with" if convects else "Newton's linearisation about"
+        yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps")
+    solver = {
+        "direct": f"sparse LU of {kept} unknowns after static condensation",
+        "amg": f"FGMRES with algebraic multigrid to a relative residual of {case.linear.tolerance:g}",
+    }
+    yield Item("fluid's linear solver", solver[case.linear.solver])
+
+
+def solid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
+    """The solids, their mesh and how their equations are solved."""
+    if meshes.solid is None:
+        return
+    structure, mesh = meshes.solid
+    unknowns = 2 * len(mesh.points)
+    solver = {"direct": "sparse LU", "amg": f"algebraic multigrid to a relative residual of {case.linear.tolerance:g}"}
+    yield Item("solid mesh", _mesh(structure, mesh))
+    yield Item(
+        "solid",
+        f"{unknowns} unknowns of displacement, given ones included; "
+        f"{unknowns - 2 * inner_nodes(mesh, mesh.order)} after static condensation, {solver[case.linear.solver]}",
+    )
+    for solid in case.solids:
+        yield Item(f"solid {solid.name!r}", _material(solid, case.fluid))
+
+
+def _material(solid: Solid, fluid: Fluid | None) -> str:
+    ratio = f"; density ratio solid/fluid {solid.density / fluid.density:.4g}" if fluid else ""
+    return (
+        f"{_LAWS[solid.model]}, plane {solid.plane}, E = {solid.youngs_modulus:g}, ν = {solid.poissons_ratio:g}, "
+        f"ρ = {solid.density:g}{ratio}"
+    )

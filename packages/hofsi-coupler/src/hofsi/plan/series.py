@@ -1,0 +1,45 @@
+"""What a run does step by step, and what it writes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hofsi.case import Case, Steady, Unsteady
+from hofsi.plan.facts import counted, has_series
+from hofsi.plan.report import Item
+
+__all__ = ["output_items", "time_items"]
+
+
+def time_items(case: Case) -> Iterator[Item]:
+    """The steps."""
+    if isinstance(case.time, Unsteady):
+        time = case.time
+        last = time.step(time.steps)[1]
+        shorter = "" if last == time.dt else f", the last of {last:g},"
+        order = "first order" if time.steps == 1 else "second order (the first step: of first)"
+        yield Item(
+            "time",
+            f"{counted(time.steps, 'step')} of {time.dt:g}{shorter} from {time.start:g} to {time.end:g}, "
+            f"backward differences of {order}",
+        )
+    else:
+        yield Item("time", "steady")
+
+
+def output_items(case: Case) -> Iterator[Item]:
+    """Quantities, fields and plots."""
+    output = case.output
+    if case.quantities:
+        yield Item("quantities", ", ".join(quantity.name for quantity in case.quantities))
+    if output.period_of is not None and isinstance(case.time, Unsteady):
+        yield Item("period", f"of {output.period_of}")
+    if output.fields:
+        files = " and ".join(name for name, body in (("fluid.pvd", case.fluid), ("solid.pvd", case.solids)) if body)
+        if isinstance(case.time, Steady):
+            yield Item("fields", f"{files} of the steady state")
+        else:
+            times = counted(-(-case.time.steps // output.every), "time")
+            yield Item("fields", f"{files} every {counted(output.every, 'step')} and at the end: {times}")
+    if output.plots:
+        yield Item("plots", "PNG of mesh" + (", fields and quantities" if has_series(case) else " and fields"))
