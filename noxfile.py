@@ -84,9 +84,9 @@ def imports(session: nox.Session) -> None:
 
 @nox.session
 def demo(session: nox.Session) -> None:
-    """Run the Wall-Ramm flap for 240 steps at order 4 into results/demo."""
+    """Run the Wall-Ramm flap for 400 steps at order 4 into results/demo."""
     install_packages(session)
-    settings = ["mesh.order=4", "time.dt=0.005", "time.end=1.2"]
+    settings = ["mesh.order=4", "time.end=1.0"]
     changes = [word for setting in settings for word in ("--set", setting)]
     session.run("hofsi", "run", "examples/wall_ramm.toml", "-o", "results/demo", *changes, *session.posargs)
 

@@ -67,9 +67,7 @@ class FluidSolver(FluidEquations):
             self.boundary.stick(relative, points, mesh_velocity)
             expected = relative + mesh_velocity
         rate = float(c[0])
-        return FluidStep(
-            self, state, points, mesh_velocity, rate, history, time, expected, order, convection
-        )
+        return FluidStep(self, state, points, mesh_velocity, rate, history, time, expected, order, convection)
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
         """Start a search for the steady state on a mesh at rest."""
