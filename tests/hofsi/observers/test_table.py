@@ -55,8 +55,10 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
     seconds = iter([10.0, 10.5, 12.25])
     table = StepTable(tmp_path / "steps.csv", counts, lambda: next(seconds))
     for step in (1, 2):
-        counts["fluid"].factorisations += 2
-        counts["solid"].factorisations += 1
+        counts["fluid"].factorised("flow")
+        counts["fluid"].factorised("iterations" if step == 2 else "flow")
+        counts["solid"].factorised("tangent")
+        counts["fluid"].krylov_iterations += 5
         counts["solid"].assemblies += 1
         mesh: Any = SimpleNamespace(regenerated=7, substeps=2, amplification=6.25, snapped=True)
         table.observe(record(step, state=State(mesh=mesh), coupling=CouplingRecord(4, 1e-7, 2e-8), min_det_J=0.25))
@@ -77,6 +79,8 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         "mesh_substeps": "2",
         "mesh_amplification": "6.25",
         "factorisations": "6",
+        "factorised_because": "flow 1, iterations 1, tangent 1",
+        "krylov_iterations": "10",
         "assemblies": "2",
         "seconds": "2.25",
     }
@@ -88,7 +92,7 @@ def test_what_a_problem_does_not_have_stays_empty(tmp_path: Path) -> None:
     table.close()
     (written,) = lines(tmp_path / "steps.csv")
     empty = [name for name, cell in written.items() if not cell]
-    assert empty == list(STEP_COLUMNS[3:10])
+    assert empty == [*STEP_COLUMNS[3:10], "factorised_because"]
     assert (table.coupling_iterations, table.blocks_regenerated) == (0, 0)
 
 

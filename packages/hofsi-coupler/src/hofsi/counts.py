@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 __all__ = ["Counts"]
 
@@ -20,10 +20,14 @@ class Counts:
     assemblies : int
         Element matrices that are factorised.
     factorisations, solves : int
+    krylov_iterations : int
+        Of linear solutions that are iterated.
     iterations : int
         Nonlinear iterations.
     continuation_steps : int
         Easier problems, and the one asked for, that were tried where Newton's method alone had failed.
+    reasons : dict of str to int
+        Why matrices were factorised, and how often.
     """
 
     geometries: int = 0
@@ -33,3 +37,10 @@ class Counts:
     solves: int = 0
     iterations: int = 0
     continuation_steps: int = 0
+    krylov_iterations: int = 0
+    reasons: dict[str, int] = field(default_factory=dict)
+
+    def factorised(self, reason: str) -> None:
+        """Count a factorisation and why it was made."""
+        self.factorisations += 1
+        self.reasons[reason] = self.reasons.get(reason, 0) + 1

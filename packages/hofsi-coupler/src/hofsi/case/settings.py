@@ -93,10 +93,20 @@ class NonlinearSettings:
 
 @dataclass(frozen=True)
 class LinearSettings:
-    """The linear solver; its relative tolerance is for "amg" only."""
+    """How linear systems are solved.
+
+    Attributes
+    ----------
+    solver : {"direct", "amg"}
+    tolerance : float
+        Of the relative residual, for "amg" only.
+    lag : bool
+        Whether the fluid's nonlinear iterations solve with earlier factors, by GMRES, as long as that is cheap.
+    """
 
     solver: Literal["direct", "amg"] = "direct"
     tolerance: float = 1e-10
+    lag: bool = True
 
 
 @dataclass(frozen=True)

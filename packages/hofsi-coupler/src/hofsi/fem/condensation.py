@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import MatrixPattern, assemble_vector
 from hofsi.fem.constraints import NodeConstraints
+from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.direct import DirectFactor
+from hofsi.linear.lagged import LaggedSolver
 from hofsi.linear.multifrontal import EliminationTree, multifrontal_solver
 from hofsi.linear.solver import Solver
 
@@ -100,14 +102,44 @@ class CondensedSystem:
 
     def factorise(self, A: Array) -> CondensedFactor:
         """Condense and factorise element matrices A of shape (e, k, k)."""
+        return self._solved(A, self._factorised)
+
+    def lagged(self, A: Array, factor: CheckedSolver, tolerance: float, limit: int) -> CondensedFactor:
+        """Condense element matrices A of shape (e, k, k) and solve with the factors of an earlier condensed matrix.
+
+        Parameters
+        ----------
+        A : ndarray, shape (e, k, k)
+        factor : CheckedSolver
+            ``factor`` of a `CondensedFactor` of the same unknowns.
+        tolerance, limit
+            See `hofsi.linear.lagged.LaggedSolver`, which becomes the ``factor`` of the result.
+        """
+
+        def solver(S: Array) -> LaggedSolver:
+            return LaggedSolver(partial(self._product, S), factor, partial(self._exact, S), tolerance, limit)
+
+        return self._solved(A, solver)
+
+    def _exact(self, S: Array) -> CheckedSolver:
+        """Factors of condensed element matrices."""
+        if self._tree is None:
+            return DirectFactor(self._pattern.matrix(S))
+        return multifrontal_solver(self._tree, S, lambda: self._pattern.matrix(S))
+
+    def _solved(self, A: Array, solver: Callable[[Array], Solver]) -> CondensedFactor:
+        """Condense, and let a solver of condensed element matrices do the rest."""
         S, inverse, X = self._condensed(A)
-        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, self._factorised(S))
+        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, solver(S))
+
+    def _product(self, S: Array, x: Array) -> Array:
+        """Condensed element matrices times a vector of the free unknowns."""
+        local = np.append(x, 0.0)[self._skeleton]  # number -1 reads the zero of a constrained unknown
+        return assemble_vector(self._skeleton, (S @ local[:, :, None])[:, :, 0], len(x))
 
     def _factorised(self, S: Array) -> Solver:
         """What solves with condensed element matrices (e, boundary, boundary)."""
-        if self._tree is None:
-            return self._solver(self._pattern.matrix(S))
-        return multifrontal_solver(self._tree, S, lambda: self._pattern.matrix(S))
+        return self._exact(S) if self._solver is DirectFactor else self._solver(self._pattern.matrix(S))
 
     @cached_property
     def _tree(self) -> EliminationTree | None:

@@ -102,6 +102,7 @@ def read_linear(table: Table) -> LinearSettings:
     settings = LinearSettings(
         solver=choice(table, "solver", ("direct", "amg"), default.solver),
         tolerance=_tolerance(table, default.tolerance),
+        lag=table.boolean("lag", default.lag),
     )
     table.finish()
     return settings

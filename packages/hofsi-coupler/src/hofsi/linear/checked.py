@@ -93,6 +93,10 @@ class CheckedSolver:
             )
         return x
 
+    def substitute(self, b: Array) -> Array:
+        """Solve once, as well as the factors can, without a look at the residual: for preconditioning."""
+        return self._factor.substitute(b)
+
     def _acceptable(self, x: Array, residual: float, size: float) -> bool:
         if residual <= _ACCEPT:
             return True

@@ -29,6 +29,8 @@ STEP_COLUMNS = (
     "mesh_substeps",
     "mesh_amplification",
     "factorisations",
+    "factorised_because",
+    "krylov_iterations",
     "assemblies",
     "seconds",
 )
@@ -104,7 +106,8 @@ class StepTable:
     ----------
     path : path-like
     counts : mapping of str to Counts
-        Of each field, live: factorisations and assemblies are written as they stand after the step.
+        Of each field, live: factorisations, iterations of GMRES and assemblies are written as they stand after the
+        step, the reasons for factorisations as far as they are the step's own.
     clock : callable
         Seconds; those since the table was opened are written.
 
@@ -124,6 +127,7 @@ class StepTable:
         self._counts, self._clock = counts, clock
         self._opened = clock()
         self._mesh: object = None
+        self._reasons: dict[str, int] = {}
         self._lines = _Lines(path, STEP_COLUMNS)
         self.steps = self.coupling_iterations = self.blocks_regenerated = self.mesh_jumps = 0
 
@@ -152,10 +156,22 @@ class StepTable:
                 blocks,
                 *motion,
                 sum(count.factorisations for count in self._counts.values()),
+                self._because(),
+                sum(count.krylov_iterations for count in self._counts.values()),
                 sum(count.assemblies for count in self._counts.values()),
                 round(self._clock() - self._opened, 4),
             )
         )
+
+    def _because(self) -> str | None:
+        """Reasons for the factorisations of this step, with their numbers."""
+        reasons: dict[str, int] = {}
+        for count in self._counts.values():
+            for reason, number in count.reasons.items():
+                reasons[reason] = reasons.get(reason, 0) + number
+        new = {reason: number - self._reasons.get(reason, 0) for reason, number in reasons.items()}
+        self._reasons = reasons
+        return ", ".join(f"{reason} {number}" for reason, number in sorted(new.items()) if number) or None
 
     def close(self) -> None:
         """Close the file."""

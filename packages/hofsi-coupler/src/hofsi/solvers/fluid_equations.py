@@ -14,6 +14,7 @@ from hofsi.kernels import navier_stokes as kernel
 from hofsi.linear.solver import Solver
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
+from hofsi.solvers.fluid_factors import FluidFactors
 from hofsi.solvers.fluid_system import FluidSystem, fluid_system
 
 Array = NDArray[np.float64]
@@ -52,6 +53,7 @@ class FluidEquations:
         self.space = TaylorHood.on(mesh)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.counts = Counts()
+        self.factors = FluidFactors(self.counts, linear.lag)
         self._system: FluidSystem | None = None
         self._system_for: object = None
         self._geometry: tuple[Array, Geometry, Array, Array] | None = None
@@ -118,5 +120,5 @@ class FluidEquations:
         A, system = self.constant_matrices(points, rate), self.system(points)
         if self._stokes is None or self._stokes[0] is not A or self._stokes[1] is not system:
             self._stokes = (A, system, system.factorise(A))
-            self.counts.factorisations += 1
+            self.counts.factorised("mesh or step size")
         return self._stokes[2]

@@ -21,6 +21,8 @@ __all__ = ["FluidStep"]
 _ON_THE_WAY = 1e-6  # tolerance of the problems that continuation solves on the way
 _ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else is left of a flow without stress
 _FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
+_ROUGHEST = 1e-2  # relative residual of an iteration's linear system
+_PART = 0.3  # of the nonlinear tolerance: a linear system need not be solved beyond
 _UNEXPECTED = 0.25  # of the velocity: a flow further from what was expected needs more than one linearisation
 
 
@@ -129,7 +131,7 @@ class FluidStep:
         if self._convection == "linearised":
             operator.add_reaction(A, self._expected)
             self._linear_load = operator.self_convection(self._expected)
-        equations.counts.factorisations += 1
+        equations.counts.factorised("linear step")
         return A, equations.system(self.points).factorise(A)
 
     def _settle(self, unknowns: Array) -> Array:
@@ -192,13 +194,12 @@ class FluidStep:
                 )
             if iteration == limit:
                 break
-            J = A.copy()
+            J, velocity = A.copy(), unknowns[: self._expected.size].reshape(-1, 2)
             if not picard:
-                self._operator.add_reaction(J, unknowns[: self._expected.size].reshape(-1, 2))
-            factor = equations.system(self.points).factorise(J)
-            delta = factor.solve(self._operator.imbalance(A, unknowns))
-            equations.counts.factorisations += 1
-            equations.counts.solves += 1
+                self._operator.add_reaction(J, velocity)
+            r, enough = self._operator.imbalance(A, unknowns), _enough(norm / scale, tolerance)
+            system = equations.system(self.points)
+            delta = equations.factors.solve(system, J, r, velocity, self._rate, enough)
             equations.counts.iterations += 1
             unknowns, A, norm, scale = self._damped(unknowns, delta, norm)
         if not stop:
@@ -247,3 +248,8 @@ class FluidStep:
             self.reaction(),
             self.time,
         )
+
+
+def _enough(residual: float, tolerance: float) -> float:
+    """How well an iteration's linear system is worth solving: Newton's method squares the relative residual."""
+    return min(_ROUGHEST, max(residual, _PART * tolerance / residual))

@@ -271,7 +271,7 @@ class SolidNewton:
         K = self._equations.tangent(point.gradient, geometric, self._mass_factor, self._pressures)
         self._counts.assemblies += 1
         factor = self._system.factorise(K)
-        self._counts.factorisations += 1
+        self._counts.factorised("tangent")
         return Tangent(self._mass_factor, K, factor)
 
     def _increment(self, tangent: Tangent, point: _Point, offset: Array | float, movement: Array | None) -> Array:

@@ -1,0 +1,99 @@
+"""Factors of the fluid's matrices that outlive the iteration, and the step, they were made for."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi.counts import Counts
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.linear.checked import CheckedSolver
+from hofsi.linear.lagged import LaggedSolver
+from hofsi.solvers.fluid_system import FluidSystem
+
+Array = NDArray[np.float64]
+
+__all__ = ["FluidFactors"]
+
+_LIMIT = 10  # iterations: more cost as much as new factors
+_FLOW = 0.5  # change of the velocity, as a part of the largest one
+_RATE = 2.0  # ratio of step sizes
+
+
+class FluidFactors:
+    """Solves the linear systems of Newton's and Picard's iterations, with old factors where they serve.
+
+    A matrix is factorised if there are no factors yet ("first"), if the free unknowns are others ("unknowns"), if the
+    step size has changed by more than a factor of two ("step size"), if the velocity has changed by more than half of
+    the largest ("flow"), or if GMRES needs more than ten iterations with the factors at hand ("iterations").
+
+    Parameters
+    ----------
+    counts : Counts
+        Factorisations with their reasons, solutions and iterations of GMRES are counted there.
+    lag : bool
+        Whether to keep factors at all.
+    """
+
+    def __init__(self, counts: Counts, lag: bool) -> None:
+        self._counts, self._lag = counts, lag
+        self._factor: CheckedSolver | None = None
+        self._system: CondensedSystem | None = None
+        self._velocity, self._rate = np.zeros(0), 0.0
+
+    def solve(
+        self, system: FluidSystem, A: Array, r: Array, velocity: Array, rate: float, tolerance: float
+    ) -> Array:
+        """Solve once with element matrices.
+
+        Parameters
+        ----------
+        system : FluidSystem
+        A : ndarray, shape (e, k, k)
+        r : ndarray, shape (e, k)
+            Right-hand side, element by element.
+        velocity : ndarray, shape (n, 2)
+            The one that A belongs to.
+        rate : float
+            Weight of the new velocity in the time derivative that is part of A.
+        tolerance : float
+            Of the residual, relative to the condensed right-hand side; new factors solve more exactly.
+
+        Returns
+        -------
+        ndarray, shape (size,)
+        """
+        self._counts.solves += 1
+        if not self._lag or not isinstance(system, CondensedSystem):
+            self._counts.factorised("new matrix")
+            return system.factorise(A).solve(r)
+        reason = self._reason(system, velocity, rate)
+        if reason or self._factor is None:
+            self._counts.factorised(reason)
+            solver = system.factorise(A)
+            if isinstance(solver.factor, CheckedSolver):
+                self._keep(system, solver.factor, velocity, rate)
+            return solver.solve(r)
+        lagged = system.lagged(A, self._factor, tolerance, _LIMIT)
+        x = lagged.solve(r)
+        assert isinstance(lagged.factor, LaggedSolver)
+        self._counts.krylov_iterations += lagged.factor.iterations
+        if lagged.factor.renewed:
+            self._counts.factorised("iterations")
+            self._keep(system, lagged.factor.factor, velocity, rate)
+        return x
+
+    def _keep(self, system: CondensedSystem, factor: CheckedSolver, velocity: Array, rate: float) -> None:
+        self._system, self._factor, self._velocity, self._rate = system, factor, velocity.copy(), rate
+
+    def _reason(self, system: CondensedSystem, velocity: Array, rate: float) -> str:
+        """Why old factors would not do; empty if they may."""
+        if self._factor is None or self._system is None:
+            return "first"
+        if system is not self._system and not np.array_equal(system.unknowns, self._system.unknowns):
+            return "unknowns"
+        if not rate <= _RATE * self._rate or not self._rate <= _RATE * rate:
+            return "step size"
+        if np.abs(velocity - self._velocity).max(initial=0.0) > _FLOW * np.abs(velocity).max(initial=0.0):
+            return "flow"
+        return ""
