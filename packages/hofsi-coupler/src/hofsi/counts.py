@@ -24,6 +24,8 @@ class Counts:
         Nonlinear iterations.
     continuation_steps : int
         Easier problems, and the one asked for, that were tried where Newton's method alone had failed.
+    iterations_below : int
+        Nonlinear iterations at lower orders that found where to start.
     """
 
     geometries: int = 0
@@ -33,3 +35,4 @@ class Counts:
     solves: int = 0
     iterations: int = 0
     continuation_steps: int = 0
+    iterations_below: int = 0
