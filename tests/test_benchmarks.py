@@ -17,7 +17,7 @@ import pytest
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 TINY = {
     "curve_accuracy": ["--orders", "1", "3", "--elements", "8", "16", "--kinds", "arc", "nurbs, degree 3", "spline"],
-    "fluid_work_precision": ["--orders", "2", "4", "--k", "1"],
+    "fluid_work_precision": ["--orders", "2", "4", "--counts", "1,2,6,2"],
     "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],
     "mesh_scaling": ["--nodes", "2000", "9000", "--order", "2", "--repeats", "2"],
     "mesh_motion": [
@@ -38,7 +38,7 @@ TINY = {
     "mesh_motion_smoothness": ["--steps", "20", "--halvings", "1", "--order", "2"],
 }
 
-DRAWN = ("mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
+DRAWN = ("fluid_work_precision", "mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
 PACKAGES = ("full_mesh_movers", "motion_cases", "motion_contest")
 
 
@@ -72,7 +72,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str
     yield run
     sys.path.remove(str(FOLDER))
     for name in set(sys.modules) - before:
-        if name in ("_result", *TINY) or name.partition(".")[0] in PACKAGES:
+        if name in ("_precision", "_result", *TINY) or name.partition(".")[0] in PACKAGES:
             sys.modules.pop(name)
 
 
@@ -149,6 +149,28 @@ def test_errors_of_the_cylinder_fall_with_the_order(measured):
     for name in ("c_D", "c_L", "dp"):
         assert fourth[f"error of {name}"] < 0.1 * second[f"error of {name}"]
     assert fourth["error of c_D"] < 1e-3
+    assert fourth["largest error"] == max(fourth[f"error of {name}"] for name in ("c_D", "c_L", "dp"))
+    assert (measured("fluid_work_precision").folder / "fluid_work_precision.png").stat().st_size > 10_000
+
+
+def test_the_factor_compares_the_cheapest_runs_that_are_good_enough(measured):
+    measured("fluid_work_precision")
+    factors = importlib.import_module("_precision").factors
+    runs = [
+        {"program": program, "order": order, "elements": 9, "s": seconds, "e": error}
+        for program, order, seconds, error in (
+            ("hofsi", 4, 1.0, 2e-5),
+            ("hofsi", 5, 2.0, 3e-7),
+            ("hofsi", 6, 1.5, 4e-7),
+            ("NGSolve", 4, 5.0, 8e-5),
+            ("NGSolve", 5, 12.0, 2e-7),
+        )
+    ]
+    found = {row["error"]: row for row in factors(runs, "s", "e")}
+    assert found[1e-4]["factor"] == 5.0
+    assert found[1e-6]["factor"] == 8.0
+    assert found[1e-6]["hofsi run"] == "order 6, 9 elements"
+    assert found[1e-8]["factor"] is None
 
 
 def test_curves_are_met_at_the_order_of_the_elements(measured):

@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.verification, pytest.mark.slow]
 
 @pytest.mark.parametrize(
     ("order", "drag", "lift", "drop"),
-    [(4, 1e-5, 2e-5, 5e-5), (6, 1e-7, 1e-7, 1e-7), (8, 1e-9, 3e-9, 1e-8)],
+    [(4, 1e-5, 2e-5, 5e-5), (6, 1e-7, 1e-7, 1e-7), (8, 1e-10, 1e-10, 1e-8), (10, 1e-11, 1e-11, 1e-10)],
 )
 def test_flow_past_a_cylinder(order, drag, lift, drop, record_property):
     problem = build(load_case(SCENE, [f"mesh.order={order}"]))
@@ -37,3 +37,11 @@ def test_flow_past_a_cylinder(order, drag, lift, drop, record_property):
     assert found["c_D"] == pytest.approx(DRAG, rel=drag)
     assert found["c_L"] == pytest.approx(LIFT, abs=lift)
     assert found["dp"] == pytest.approx(DROP, abs=drop)
+
+
+def test_48_elements_of_order_10_have_errors_below_1e_8():
+    counts = [f"mesh.count[{entry}].elements={count}" for entry, count in enumerate((1, 2, 4, 3))]
+    problem = build(load_case(SCENE, ["mesh.order=10", *counts]))
+    (record,) = simulate(problem)
+    found = {name: evaluate(record) for name, evaluate in evaluators(problem).items()}
+    assert found == pytest.approx({"c_D": DRAG, "c_L": LIFT, "dp": DROP}, rel=0.0, abs=1e-8)

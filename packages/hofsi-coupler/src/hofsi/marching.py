@@ -86,11 +86,14 @@ class FluidMarch:
             return State(fluid=step.accept(), mesh=mesh), None
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
-        """Solve for the steady flow on the mesh as it is."""
+        """Solve for the steady flow on the mesh as it is, from rest by way of lower orders."""
+        from hofsi.solvers.lower_order import start_of_lower_order
+
         assert state.fluid is not None
         assert state.mesh is not None
         with self._clock.phase("fluid"):
-            step = self._solver.begin_steady(state.fluid, state.mesh.mesh.points)
+            start = start_of_lower_order(self._solver, state.fluid)
+            step = self._solver.begin_steady(start, state.mesh.mesh.points)
             step.solve(np.zeros((0, 2)))
             return State(fluid=step.accept(), mesh=state.mesh), None
 

@@ -10,8 +10,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import MatrixPattern, assemble_vector
+from hofsi.fem.blocks import BlockSolver, block_solver
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.direct import DirectFactor
@@ -129,8 +129,8 @@ class CondensedSystem:
 
     def _solved(self, A: Array, solver: Callable[[Array], Solver]) -> CondensedFactor:
         """Condense, and let a solver of condensed element matrices do the rest."""
-        S, inverse, X = self._condensed(A)
-        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, solver(S))
+        S, inner, X = self._condensed(A)
+        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inner, X, solver(S))
 
     def _product(self, S: Array, x: Array) -> Array:
         """Condensed element matrices times a vector of the free unknowns."""
@@ -152,23 +152,20 @@ class CondensedSystem:
         """Return the condensed matrix of element matrices (e, k, k), in the nodes' own frames."""
         return self._pattern.matrix(self._condensed(A)[0])
 
-    def _condensed(self, A: Array) -> tuple[Array, Array | None, Array | None]:
-        """Condensed element matrices, inverses of the inner blocks, and those times the blocks beside them."""
+    def _condensed(self, A: Array) -> tuple[Array, BlockSolver | None, Array | None]:
+        """Condensed element matrices, what solves with the inner blocks, and its solutions for those beside them."""
         b = self.boundary
         S = A[:, :b, :b]
-        inverse: Array | None = None
+        inner: BlockSolver | None = None
         X: Array | None = None
         if self.inner:
-            try:
-                inverse = np.asarray(np.linalg.inv(A[:, b:, b:]), dtype=float)
-            except np.linalg.LinAlgError as error:
-                raise LinearSolverError("the matrix of an element's inner unknowns is singular.") from error
-            X = inverse @ A[:, b:, :b]
+            inner = block_solver(A[:, b:, b:])
+            X = inner.solve(A[:, b:, :b])
             S = S - A[:, :b, b:] @ X
         if self._rotated.size:
             S = S.copy()
             S[self._rotated] = self._rotation.transpose(0, 2, 1) @ S[self._rotated] @ self._rotation
-        return S, inverse, X
+        return S, inner, X
 
     def rotate_back(self, x: Array) -> Array:
         """Element vectors (e, boundary) from the nodes' own frames to x and y."""
@@ -187,10 +184,10 @@ class CondensedFactor:
     """A factorised condensed system; made by `CondensedSystem.factorise`."""
 
     def __init__(
-        self, system: CondensedSystem, coupling: Array, inverse: Array | None, X: Array | None, factor: Solver
+        self, system: CondensedSystem, coupling: Array, inner: BlockSolver | None, X: Array | None, factor: Solver
     ) -> None:
         self.system, self.factor = system, factor
-        self._coupling, self._inverse, self._X = coupling, inverse, X
+        self._coupling, self._inner, self._X = coupling, inner, X
 
     def solve(self, r: Array) -> Array:
         """Solve for all unknowns.
@@ -209,8 +206,8 @@ class CondensedFactor:
         b = system.boundary
         on_boundary = r[:, :b].copy()
         z = None
-        if self._inverse is not None:
-            z = (self._inverse @ r[:, b:, None])[:, :, 0]
+        if self._inner is not None:
+            z = self._inner.solve(r[:, b:, None])[:, :, 0]
             on_boundary -= (self._coupling @ z[:, :, None])[:, :, 0]
         skeleton = system._skeleton
         solution = self.factor.solve(assemble_vector(skeleton, system.rotate(on_boundary), len(system.unknowns)))
