@@ -19,7 +19,18 @@ from manufactured_flows.scenes import curved_channel, imposed, waving_square
 
 Array = NDArray[np.float64]
 
-__all__ = ["CASES", "ELEMENTS", "MESHES", "Observed", "Pattern", "at_rest", "in_space", "in_time", "observed"]
+__all__ = [
+    "CASES",
+    "ELEMENTS",
+    "MESHES",
+    "Observed",
+    "Pattern",
+    "as_scene",
+    "at_rest",
+    "in_space",
+    "in_time",
+    "observed",
+]
 
 Pattern = Literal["equal", "varying"]
 
@@ -167,3 +178,27 @@ def at_rest(order: int, elements: tuple[int, int] | None = None) -> Observed:
         assert record.state.fluid is not None
         errors.append(l2_errors(KOVASZNAY, problem.fluid.solver, record.state.fluid))
     return observed(errors, counts[1] / counts[0])
+
+
+def as_scene(case: str, *, order: int, elements: int, end: float, steps: tuple[int, int]) -> Observed:
+    """Order in time of a scene as it is run: from its initial velocity, the first step by BDF1, default convection.
+
+    Parameters
+    ----------
+    case : str
+        One of ``CASES``.
+    order, elements : int
+    end : float
+        From t = 0.
+    steps : pair of int
+        The larger second.
+    """
+    flow, scene = CASES[case]
+    errors = []
+    for count in steps:
+        problem = built(scene(flow, order, elements, time=f"dt = {end / count!r}\nsteps = {count}"))
+        assert problem.fluid is not None
+        *_, record = simulate(problem)
+        assert record.state.fluid is not None
+        errors.append(l2_errors(flow, problem.fluid.solver, record.state.fluid))
+    return observed(errors, steps[1] / steps[0])
