@@ -17,6 +17,7 @@ import pytest
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 TINY = {
     "curve_accuracy": ["--orders", "1", "3", "--elements", "8", "16", "--kinds", "arc", "nurbs, degree 3", "spline"],
+    "fluid_order": ["--orders", "2", "--elements", "1", "2", "--meshes", "blocks", "pseudo-solid"],
     "fluid_work_precision": ["--orders", "2", "4", "--counts", "1,2,6,2"],
     "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],
     "mesh_scaling": ["--nodes", "2000", "9000", "--order", "2", "--repeats", "2"],
@@ -39,7 +40,7 @@ TINY = {
 }
 
 DRAWN = ("fluid_work_precision", "mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
-PACKAGES = ("full_mesh_movers", "motion_cases", "motion_contest")
+PACKAGES = ("full_mesh_movers", "manufactured_flows", "motion_cases", "motion_contest")
 
 
 @dataclass(frozen=True)
@@ -171,6 +172,16 @@ def test_the_factor_compares_the_cheapest_runs_that_are_good_enough(measured):
     assert found[1e-6]["factor"] == 8.0
     assert found[1e-6]["hofsi run"] == "order 6, 9 elements"
     assert found[1e-8]["factor"] is None
+
+
+def test_flows_converge_on_both_kinds_of_meshes(measured):
+    result = measured("fluid_order").result
+    assert [(row["flow"], row["mesh"]) for row in result.rows] == [
+        (flow, mesh) for flow in ("vortex", "imposed") for mesh in ("blocks", "pseudo-solid")
+    ]
+    for row in result.rows:
+        assert row["velocity order"] > 2.0
+        assert row["pressure order"] > 1.5
 
 
 def test_curves_are_met_at_the_order_of_the_elements(measured):

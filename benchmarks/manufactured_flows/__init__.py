@@ -1,0 +1,1 @@
+"""Exact flows on meshes that move, to observe the order of convergence."""
