@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
+
+from hofsi.linear.unknown_groups import Pairs, UnknownGroups
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -62,36 +63,35 @@ def dissect(cells: Index, places: Array, leaf: int) -> tuple[Front, ...]:
     ----------
     George, SIAM J. Numer. Anal. 10 (1973) 345–363, doi:10.1137/0710032.
     """
-    size = int(cells.max(initial=-1)) + 1
-    shared = _incidence(cells, size)
-    total = np.bincount(cells[cells >= 0], minlength=size)
-    middles = np.asarray(shared.T @ places) / np.maximum(total, 1)[:, None]
+    groups = UnknownGroups(cells)
+    middles = groups.middles(places)
     parts: list[tuple[Index, tuple[int, ...], Index, Index]] = []
 
-    def visit(elements: Index) -> tuple[int, Index, Index]:
-        """Number of the part of some elements, its unknowns that are left, and how many of its elements have each."""
+    def visit(elements: Index, pairs: Pairs) -> tuple[int, Index, Index]:
+        """Number of the part of some elements, its groups that are left, and how many of its elements have each."""
         children: tuple[int, ...] = ()
         if len(elements) <= leaf:
-            mine = cells[elements]
-            unknowns, counts = np.unique(mine[mine >= 0], return_counts=True)
+            own, counts = pairs.groups, pairs.counts
         else:
-            first, second = (visit(half) for half in _cut(elements, shared, places))
+            first, second = (visit(half, pairs.restricted(half)) for half in _cut(elements, pairs, groups, places))
             children = first[0], second[0]
-            unknowns, inverse = np.unique(np.concatenate([first[1], second[1]]), return_inverse=True)
+            own, inverse = np.unique(np.concatenate([first[1], second[1]]), return_inverse=True)
             counts = np.bincount(inverse, weights=np.concatenate([first[2], second[2]])).astype(np.int64)
-        done = counts == total[unknowns]
-        own = unknowns[done][np.argsort(_along(middles[unknowns[done]]), kind="stable")]
-        parts.append((np.sort(elements) if not children else elements[:0], children, own, unknowns[~done]))
-        return len(parts) - 1, unknowns[~done], counts[~done]
+        done = counts == groups.degree[own]
+        eliminated = own[done][np.argsort(_along(middles[own[done]]), kind="stable")]
+        parts.append((np.sort(elements) if not children else elements[:0], children, eliminated, own[~done]))
+        return len(parts) - 1, own[~done], counts[~done]
 
-    visit(np.arange(len(cells)))
-    order = np.full(size, -1)
+    visit(np.arange(len(cells)), groups.pairs)
+    order = np.full(len(groups.degree), -1)
     eliminated = np.concatenate([part[2] for part in parts])
     order[eliminated] = np.arange(len(eliminated))
-    return tuple(
-        Front(elements, children, np.concatenate([own, left[np.argsort(order[left])]]), len(own))
-        for elements, children, own, left in parts
-    )
+    fronts = []
+    for elements, children, own, left in parts:
+        left = left[np.argsort(order[left])]
+        unknowns = groups.members(np.concatenate([own, left]))
+        fronts.append(Front(elements, children, unknowns, int(groups.sizes[own].sum())))
+    return tuple(fronts)
 
 
 def _along(places: Array) -> Array:
@@ -102,37 +102,51 @@ def _along(places: Array) -> Array:
     return np.asarray(x @ np.linalg.eigh(x.T @ x)[1][:, 1])
 
 
-def _incidence(cells: Index, size: int) -> sp.csr_matrix:
-    """Elements by unknowns."""
-    rows, columns = np.nonzero(cells >= 0)
-    return sp.csr_matrix((np.ones(len(rows)), (rows, cells[rows, columns])), shape=(len(cells), size))
-
-
-def _cut(elements: Index, shared: sp.csr_matrix, places: Array) -> tuple[Index, Index]:
+def _cut(elements: Index, pairs: Pairs, groups: UnknownGroups, places: Array) -> tuple[Index, Index]:
     """Two parts of about equal size with few unknowns in common: the best of some straight cuts and one by distance."""
-    mine = shared[elements]
     x = places[elements] - places[elements].mean(axis=0)
-    keys = [x[:, 0], x[:, 1], x[:, 0] + x[:, 1], x[:, 0] - x[:, 1], _distance(mine)]
-    best: tuple[int, Index, Index] | None = None
-    degree = np.asarray(mine.sum(axis=0)).ravel()
-    for key in keys:
-        sequence = np.argsort(key, kind="stable")
-        for share in _BALANCE:
-            half = max(1, min(len(elements) - 1, round(share * len(elements))))
-            low, high = sequence[:half], sequence[half:]
-            inside = np.asarray(mine[low].sum(axis=0)).ravel()
-            common = int(((inside > 0.0) & (inside < degree)).sum())
-            if best is None or common < best[0]:
-                best = common, low, high
+    number = np.empty(int(elements.max()) + 1, dtype=np.int64)
+    number[elements] = np.arange(len(elements))
+    local = number[pairs.element]
+    keys = np.stack([x[:, 0], x[:, 1], x[:, 0] + x[:, 1], x[:, 0] - x[:, 1], _distance(local, pairs, len(elements))])
+    sequences = np.argsort(keys, axis=1, kind="stable")
+    position = np.empty_like(sequences)
+    np.put_along_axis(position, sequences, np.arange(len(elements))[None, :], axis=1)
+    best: tuple[int, int, int] | None = None
+    if len(local):
+        of_pairs, sizes = position[:, local], groups.sizes[pairs.groups]
+        first = np.minimum.reduceat(of_pairs, pairs.starts, axis=1)
+        last = np.maximum.reduceat(of_pairs, pairs.starts, axis=1)
+    for share in _BALANCE:
+        half = max(1, min(len(elements) - 1, round(share * len(elements))))
+        common = ((first < half) & (last >= half)) @ sizes if len(local) else np.zeros(len(keys), dtype=np.int64)
+        k = int(common.argmin())
+        if best is None or int(common[k]) < best[0]:
+            best = int(common[k]), k, half
     assert best is not None
-    return elements[best[1]], elements[best[2]]
+    sequence = elements[sequences[best[1]]]
+    return sequence[: best[2]], sequence[best[2] :]
 
 
-def _distance(mine: sp.csr_matrix) -> Array:
-    """Distance in elements from one at the end of the longest way through them."""
-    from scipy.sparse.csgraph import breadth_first_order, shortest_path
+def _distance(local: Index, pairs: Pairs, count: int) -> Array:
+    """Distance in elements from one at the end of the longest way through them; the count if there is no way."""
+    groups = np.repeat(np.arange(len(pairs.starts)), pairs.counts)
+    found = _levels(0, local, groups, count)
+    found[found == count] = -1
+    return _levels(int(found.argmax()), local, groups, count).astype(float)
 
-    graph = (mine @ mine.T).tocsr()
-    last = int(breadth_first_order(graph, 0, return_predecessors=False)[-1])
-    found = shortest_path(graph, unweighted=True, indices=last, directed=False)
-    return np.asarray(np.where(np.isfinite(found), found, len(found)), dtype=float)
+
+def _levels(start: int, local: Index, groups: Index, count: int) -> Index:
+    """Breadth-first search over pairs of elements and groups from one element."""
+    distance = np.full(count, count)
+    distance[start] = level = 0
+    front = distance == 0
+    while front.any():
+        level += 1
+        touched = np.zeros(int(groups.max(initial=-1)) + 1, dtype=bool)
+        touched[groups[front[local]]] = True
+        front = np.zeros(count, dtype=bool)
+        front[local[touched[groups]]] = True
+        front &= distance == count
+        distance[front] = level
+    return distance

@@ -41,9 +41,7 @@ class FluidFactors:
         self._system: CondensedSystem | None = None
         self._velocity, self._rate = np.zeros(0), 0.0
 
-    def solve(
-        self, system: FluidSystem, A: Array, r: Array, velocity: Array, rate: float, tolerance: float
-    ) -> Array:
+    def solve(self, system: FluidSystem, A: Array, r: Array, velocity: Array, rate: float, tolerance: float) -> Array:
         """Solve once with element matrices.
 
         Parameters
