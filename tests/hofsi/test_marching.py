@@ -319,7 +319,8 @@ steps = 40
     assert problem.fluid is not None
     counts = problem.fluid.solver.counts
     assert 1 <= counts.iterations < 20
-    assert counts.factorisations == 40 + counts.iterations
+    assert counts.solves == 40 + counts.iterations
+    assert counts.reasons["linear step"] == 40
     assert record.state.fluid is not None
     assert steady.state.fluid is not None
     assert np.abs(record.state.fluid.velocity - steady.state.fluid.velocity).max() < 1e-8

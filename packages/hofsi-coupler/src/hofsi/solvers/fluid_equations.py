@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from hoblock import QuadMesh
 from hofsi import case
 from hofsi.counts import Counts
+from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
@@ -58,6 +59,7 @@ class FluidEquations:
         self._system_for: object = None
         self._geometry: tuple[Array, Geometry, Array, Array] | None = None
         self._constant: tuple[Array, float, Array] | None = None
+        self._row_sums: tuple[Array, float, float] | None = None
         self._enclosed: EnclosedRegions | None = None
         self._stokes: tuple[Array, FluidSystem, Solver] | None = None
 
@@ -94,6 +96,22 @@ class FluidEquations:
             self._constant = (points, rate, A)
             self.counts.constant_assemblies += 1
         return self._constant[2]
+
+    def row_sums(self, points: Array, rate: float) -> tuple[float, float]:
+        """Bounds of the norms of the assembled sums of |A| over the rows, without convection, and of ∫ |v| |∇N| for it.
+
+        Kept as long as the matrices.
+        """
+        A = self.constant_matrices(points, rate)
+        if self._row_sums is None or self._row_sums[0] is not A:
+            space = self.space
+            geometry, dNx, dNy = self.geometry(points)
+            rows = np.sqrt(A.shape[2] * np.einsum("eij,eij->ei", A, A))
+            fixed = assemble_vector(space.dofs, rows, space.size)
+            gradients = geometry.weights * (np.abs(dNx) + np.abs(dNy)).sum(axis=2)
+            convecting = assemble_vector(space.velocity_cells, gradients @ np.abs(space.velocity.N), len(points))
+            self._row_sums = (A, float(np.linalg.norm(fixed)), float(np.linalg.norm(convecting)))
+        return self._row_sums[1:]
 
     def system(self, points: Array) -> FluidSystem:
         """Pattern of the linear systems under the constraints at these node positions."""

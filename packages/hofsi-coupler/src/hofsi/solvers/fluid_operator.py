@@ -67,15 +67,27 @@ class FluidOperator:
         """Element matrices of everything else (e, k, k), shared: not to be written to."""
         return self._equations.constant_matrices(self._points, self._rate)
 
-    def convecting_with(self, velocity: Array) -> Array:
-        """Element matrices A(u) of a nodal velocity (n, 2): its convection is ∫ ρ ((u - w)·∇·)·v."""
+    def matrices(self, velocity: Array, *, newton: bool) -> Array:
+        """Element matrices A(u) of a nodal velocity (n, 2), with the convection ∫ ρ ((u - w)·∇·)·v.
+
+        With ``newton`` Newton's term ∫ ρ (·∇u)·v is added.
+        """
         space = self._equations.space
         A = self.without_convection().copy()
         geometry, dNx, dNy = self._equations.geometry(self._points)
-        a = space.velocity.N @ (velocity - self._mesh_velocity)[space.velocity_cells]
-        block = kernel.transport(space.velocity.N, dNx, dNy, geometry.weights, 0.0, self._density, a)
-        space.add(A, 0, 0, block)
-        space.add(A, 1, 1, block)
+        N, weights = space.velocity.N, geometry.weights
+        a = N @ (velocity - self._mesh_velocity)[space.velocity_cells]
+        convection = kernel.transport(N, dNx, dNy, weights, 0.0, self._density, a)
+        if newton:
+            gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
+            xx, xy, yx, yy = kernel.reaction(N, weights, self._density, gradient)
+            space.add(A, 0, 1, xy)
+            space.add(A, 1, 0, yx)
+            space.add(A, 0, 0, np.add(xx, convection, out=xx))
+            space.add(A, 1, 1, np.add(yy, convection, out=yy))
+        else:
+            space.add(A, 0, 0, convection)
+            space.add(A, 1, 1, convection)
         self._equations.counts.assemblies += 1
         return A
 
@@ -83,23 +95,24 @@ class FluidOperator:
     def _density(self) -> float:
         return self.share * self._equations.fluid.density
 
-    def add_reaction(self, A: Array, velocity: Array) -> None:
-        """Add Newton's term ∫ ρ (δu·∇u)·v."""
+    def convection(self, velocity: Array, advective: Array) -> Array:
+        """Element vectors of ∫ ρ (a·∇u)·v for nodal velocities u and a."""
         space = self._equations.space
         geometry, dNx, dNy = self._equations.geometry(self._points)
         gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
-        blocks = kernel.reaction(space.velocity.N, geometry.weights, self._density, gradient)
-        for (a, b), block in zip(((0, 0), (0, 1), (1, 0), (1, 1)), blocks, strict=True):
-            space.add(A, a, b, block)
-
-    def self_convection(self, velocity: Array) -> Array:
-        """Element load vectors of ∫ ρ (u·∇u)·v for a nodal velocity."""
-        space = self._equations.space
-        geometry, dNx, dNy = self._equations.geometry(self._points)
-        local = velocity[space.velocity_cells]
-        u, gradient = space.velocity.N @ local, kernel.velocity_gradient(dNx, dNy, local)
-        density = self._density * (gradient @ u[..., None])[..., 0]
+        a = space.velocity.N @ advective[space.velocity_cells]
+        density = self._density * (gradient @ a[..., None])[..., 0]
         return space.local_vector(kernel.load(space.velocity.N, geometry.weights, density))
+
+    def residual(self, unknowns: Array) -> Array:
+        """Element residuals f - A(u) u, shape (e, k), without assembling A(u)."""
+        velocity = self._velocity(unknowns)
+        return self.imbalance(self.without_convection(), unknowns) - self.convection(
+            velocity, velocity - self._mesh_velocity
+        )
+
+    def _velocity(self, unknowns: Array) -> Array:
+        return unknowns[: 2 * self._equations.space.velocity_count].reshape(-1, 2)
 
     def imbalance(self, A: Array, unknowns: Array, load: Array | None = None) -> Array:
         """Element residuals f - A u, shape (e, k); f is the operator's load if no other is given."""
@@ -114,12 +127,24 @@ class FluidOperator:
         left = self._in_frames(assemble_vector(dofs, residual, size))[_free_rows(system)]
         return float(np.linalg.norm(left)), float(np.linalg.norm(scale)) or 1.0
 
-    def magnitude(self, A: Array, unknowns: Array) -> float:
-        """Norm of |A| |u|: unlike the scale it does not vanish if the terms of every row cancel."""
+    def is_rounding(self, norm: float, unknowns: Array, part: float) -> bool:
+        """Whether the norm of a residual is at most a part of ‖|A(u)| |u|‖.
+
+        Unlike the scale of `size` that does not vanish if the terms of every row cancel.
+        """
+        if norm > part * self._largest_magnitude(unknowns):
+            return False
         space = self._equations.space
-        local = np.abs(unknowns)[space.dofs]
-        rows = (np.abs(A) @ local[:, :, None])[:, :, 0]
-        return float(np.linalg.norm(assemble_vector(space.dofs, rows, space.size)))
+        A = self.matrices(self._velocity(unknowns), newton=False)
+        rows = (np.abs(A, out=A) @ np.abs(unknowns)[space.dofs][:, :, None])[:, :, 0]
+        return norm <= part * float(np.linalg.norm(assemble_vector(space.dofs, rows, space.size)))
+
+    def _largest_magnitude(self, unknowns: Array) -> float:
+        """A bound of ‖|A(u)| |u|‖ that is quick to find."""
+        velocity = self._velocity(unknowns)
+        u, a = np.abs(velocity).max(), np.abs(velocity - self._mesh_velocity).max()
+        fixed, convecting = self._equations.row_sums(self._points, self._rate)
+        return float(np.abs(unknowns).max() * fixed + 2.0 * self._density * a * u * convecting)
 
     def _in_frames(self, vector: Array) -> Array:
         """A global vector with the velocity part in the nodes' own frames."""
