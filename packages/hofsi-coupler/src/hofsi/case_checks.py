@@ -18,6 +18,7 @@ from hofsi.case import (
     Roller,
     Solid,
     Steady,
+    TimeFunction,
     Traction,
     Velocity,
 )
@@ -47,7 +48,7 @@ def check_case(case: Case) -> None:
     boundary_checks.check_fluid_boundaries(case, owners)
     boundary_checks.check_solid_boundaries(case, owners)
     boundary_checks.check_motions(case, owners)
-    boundary_checks.check_forces(case, owners)
+    boundary_checks.check_quantities(case, owners)
     _check_quantities(case)
     _check_enclosed(case, owners)
     if isinstance(case.time, Steady):
@@ -105,8 +106,8 @@ def _check_solid_names(case: Case) -> None:
 
 def _check_quantities(case: Case) -> None:
     for quantity in case.quantities:
-        if isinstance(quantity, Force):
-            continue  # of the fluid or of solids: where its edges are
+        if isinstance(quantity, Force | TimeFunction):
+            continue  # of the fluid or of solids, where its edges are; of nothing
         needs_solid = isinstance(quantity, Probe) and quantity.of == "solid"
         if needs_solid and not case.solids:
             hint = 'Remove the quantity, or set of = "fluid"'

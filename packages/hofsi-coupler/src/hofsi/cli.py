@@ -18,7 +18,7 @@ from hofsi.version import __version__
 __all__ = ["main"]
 
 _BAD_INPUT, _NOT_CONVERGED, _INTERRUPTED = 2, 3, 130
-_COLUMNS = ("quantity", "last", "mean ± amplitude", "frequency")
+_COLUMNS = ("quantity", "last", "mean ± amplitude", "frequency", "phase")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -136,12 +136,15 @@ def _report(summary: Mapping[str, Any], directory: Path) -> list[str]:
 def _table(quantities: Mapping[str, Mapping[str, float | None]]) -> list[str]:
     if not quantities:
         return []
-    rows = [_COLUMNS]
+    rows: list[tuple[str, ...]] = [_COLUMNS]
     for name, values in quantities.items():
-        mean, amplitude = values["mean"], values["amplitude"]
+        mean, amplitude, phase = values["mean"], values["amplitude"], values["phase"]
         oscillation = "–" if mean is None or amplitude is None else f"{mean:.6g} ± {amplitude:.6g}"
-        rows.append((name, _number(values["last"]), oscillation, _number(values["frequency"])))
-    widths = [max(len(row[k]) for row in rows) for k in range(len(_COLUMNS))]
+        ahead = "–" if phase is None else f"{phase:.2f}°"
+        rows.append((name, _number(values["last"]), oscillation, _number(values["frequency"]), ahead))
+    if all(values["phase"] is None for values in quantities.values()):
+        rows = [row[:-1] for row in rows]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 

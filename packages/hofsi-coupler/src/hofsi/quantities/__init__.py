@@ -1,4 +1,4 @@
-"""Numbers read off finished steps: fields at points, forces, pressure differences."""
+"""Numbers read off finished steps: fields at points, forces, flow rates, integrals."""
 
 from __future__ import annotations
 
@@ -42,12 +42,46 @@ def evaluators(problem: Problem) -> dict[str, Evaluator]:
     found: dict[str, Evaluator] = {}
     for quantity in problem.case.quantities:
         match quantity:
-            case case.Probe():
-                found[quantity.name] = probe(problem, quantity)
             case case.Force():
                 if quantity.on not in forces:
                     forces[quantity.on] = force(problem, quantity)
                 found[quantity.name] = scaled(component_of(forces[quantity.on], quantity.component), quantity.factor)
-            case case.PressureDifference():
-                found[quantity.name] = pressure_difference(problem, quantity)
+            case _:
+                found[quantity.name] = _scalar(problem, quantity)
     return found
+
+
+def _scalar(problem: Problem, quantity: case.ScalarQuantity) -> Evaluator:
+    """Return a quantity that shares nothing with others."""
+    match quantity:
+        case case.Probe():
+            return probe(problem, quantity)
+        case case.PressureDifference():
+            return pressure_difference(problem, quantity)
+        case case.TimeFunction():
+            value = quantity.value
+            return lambda record: float(value.evaluate(t=record.time))
+        case _:
+            return _of_fluid(problem, quantity)
+
+
+def _of_fluid(
+    problem: Problem,
+    quantity: case.Moment | case.FlowRate | case.FlowBalance | case.MeanPressure | case.FluidIntegral,
+) -> Evaluator:
+    """Return a quantity that only a fluid has; what it needs is imported for it alone."""
+    from hofsi.quantities.flow import flow_balance, flow_rate, mean_pressure
+    from hofsi.quantities.integral import integral
+    from hofsi.quantities.moment import moment
+
+    match quantity:
+        case case.Moment():
+            return moment(problem, quantity)
+        case case.FlowRate():
+            return flow_rate(problem, quantity)
+        case case.FlowBalance():
+            return flow_balance(problem, quantity)
+        case case.MeanPressure():
+            return mean_pressure(problem, quantity)
+        case case.FluidIntegral():
+            return integral(problem, quantity)

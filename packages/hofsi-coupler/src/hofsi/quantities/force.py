@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-__all__ = ["force"]
+__all__ = ["boundary_force", "force"]
 
 
 def force(problem: Problem, asked: case.Force) -> VectorEvaluator:
@@ -35,7 +35,7 @@ def force(problem: Problem, asked: case.Force) -> VectorEvaluator:
     fluid, solid = problem.fluid, problem.solid
     if solid is not None and (fluid is None or _is_dry(fluid, solid, asked)):
         return kept(_solid_force(problem, solid, asked))
-    boundary = _boundary_force(fluid_of(problem, asked.place), asked)
+    boundary = boundary_force(fluid_of(problem, asked.place), asked)
     return kept(lambda record: boundary.evaluate(fluid_state(record)))
 
 
@@ -45,7 +45,14 @@ def _is_dry(fluid: FluidPart, solid: SolidPart, asked: case.Force) -> bool:
     return dry and not wet
 
 
-def _boundary_force(fluid: FluidPart, asked: case.Force) -> BoundaryForce:
+def boundary_force(fluid: FluidPart, asked: case.Force | case.Moment) -> BoundaryForce:
+    """Return the fluid's force on the edges that a quantity names.
+
+    Raises
+    ------
+    CaseError
+        If they are not at the fluid's boundary.
+    """
     from hofsi.solvers.fluid_forces import BoundaryForce
 
     try:

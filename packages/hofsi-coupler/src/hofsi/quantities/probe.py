@@ -35,6 +35,8 @@ def probe(problem: Problem, asked: case.Probe) -> Evaluator:
         return _pressure(fluid, asked.at, place)
     if asked.field == "displacement":
         return component_of(_mesh_displacement(fluid, asked.at, place), component)
+    if asked.field == "vorticity":
+        return _vorticity(fluid, asked.at, place)
     return component_of(_velocity(fluid, asked.at, place), component)
 
 
@@ -94,5 +96,19 @@ def _pressure(fluid: FluidPart, at: case.Point, place: str) -> Evaluator:
             return float("nan")
         weights = interpolation_weights(location, order)[permutation]
         return float(weights @ fluid_state(record).pressure[fluid.solver.space.pressure_cells[location.element]])
+
+    return evaluate
+
+
+def _vorticity(fluid: FluidPart, at: case.Point, place: str) -> Evaluator:
+    where = tracked(fluid, at, place)
+
+    def evaluate(record: StepRecord) -> float:
+        from hofsi.solvers.fluid_vorticity import vorticity_at
+
+        location = where(record)
+        if location is None:
+            return float("nan")
+        return vorticity_at(mesh_state(record).mesh, location, fluid_state(record).velocity)
 
     return evaluate

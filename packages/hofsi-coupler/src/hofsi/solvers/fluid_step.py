@@ -39,6 +39,8 @@ class FluidState:
     reaction : ndarray, shape (n, 2)
         Nodal momentum residual: what the boundary does to the fluid where it holds it; minus it is the load on a body.
     time : float
+    mesh_velocity : ndarray, shape (n, 2), or None
+        By the formula of the time scheme; None before the first step.
     """
 
     velocities: tuple[Array, ...]
@@ -46,6 +48,7 @@ class FluidState:
     points: tuple[Array, ...]
     reaction: Array
     time: float
+    mesh_velocity: Array | None = None
 
     @property
     def velocity(self) -> Array:
@@ -347,4 +350,5 @@ class FluidStep:
             (self.points, *self.state.points[:keep]),
             self.reaction(),
             self.time,
+            self.mesh_velocity,
         )
