@@ -13,9 +13,11 @@ from hofsi.case import (
     Fluid,
     FluidCondition,
     Force,
+    NoSlip,
     Pressure,
     Probe,
     Roller,
+    Slip,
     Solid,
     Steady,
     TimeFunction,
@@ -25,7 +27,7 @@ from hofsi.case import (
 from hofsi.edge_owners import FLUID, EdgeOwners, components, in_words, named_edges, quad_edges, solid_label
 from hofsi.errors import CaseError
 
-__all__ = ["check_case", "check_order"]
+__all__ = ["check_case", "check_order", "expressions"]
 
 
 def check_case(case: Case) -> None:
@@ -53,6 +55,7 @@ def check_case(case: Case) -> None:
     _check_enclosed(case, owners)
     if isinstance(case.time, Steady):
         _check_steady(case)
+        _check_drifting(case, owners)
         _check_floating(case)
 
 
@@ -151,7 +154,7 @@ def _is_open(condition: FluidCondition) -> bool:
 
 
 def _check_steady(case: Case) -> None:
-    for expression in _expressions(case):
+    for expression in expressions(case):
         if "t" in expression.variables_used:
             raise CaseError(
                 f'"{expression.text}" depends on t, and the case is steady. Remove t, or give dt and end in [time] '
@@ -168,7 +171,27 @@ def _check_steady(case: Case) -> None:
         )
 
 
-def _expressions(case: Case) -> Iterator[Expression]:
+def _check_drifting(case: Case, owners: EdgeOwners) -> None:
+    """A steady fluid whose boundary gives tractions alone may have any uniform velocity on top."""
+    if case.fluid is None:
+        return
+    held = frozenset(
+        edge
+        for condition in case.fluid.boundaries
+        if isinstance(condition, Velocity | NoSlip | Slip)
+        for name in condition.on
+        for edge in named_edges(case.mesh, name)
+    )
+    for part in components(quad for group in case.fluid.blocks for quad in case.mesh.blocks[group]):
+        if not part & held and not any(owners.is_wet(edge) for edge in part):
+            raise CaseError(
+                "no condition gives a velocity, only tractions or pressures: the steady velocity is not determined. "
+                'Give an edge type = "velocity", "no-slip" or "slip", or march in time',
+                "fluid.boundary",
+            )
+
+
+def expressions(case: Case) -> Iterator[Expression]:
     """All expressions that may depend on time."""
     materials = (*((case.fluid,) if case.fluid else ()), *case.solids)
     for material in materials:

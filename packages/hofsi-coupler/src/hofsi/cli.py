@@ -77,14 +77,19 @@ def _parser() -> argparse.ArgumentParser:
 def _check(options: argparse.Namespace) -> int:
     """Everything that a run does before its first step."""
     from hofsi.build import build
+    from hofsi.notes import notes
     from hofsi.plan import plan
     from hofsi.quantities import evaluators
 
     case = load_case(options.scene, options.changes)
     lines = plan(case).lines()
-    evaluators(build(case))
+    problem = build(case)
+    evaluators(problem)
+    known = notes(problem)
     print(case.title or Path(case.file).name)
     print("\n".join(lines))
+    if known:
+        print("\n".join(["notes:", *(f"  {text}." for text in known)]))
     return 0
 
 
