@@ -52,13 +52,13 @@ def test_a_pitching_airfoil_conserves_volume_and_repeats_itself(tmp_path):
     assert rest.max() < 1e-10  # flow out minus flow in, and what the airfoil sweeps
     assert np.abs(found["balance"]).max() < 1e-10
     assert np.ptp(found["area"]) < 1e-12 * found["area"][0]
-    quantities = result.summary["quantities"]
+    quantities = result.summary["quantities"]  # compared with order 4, for there is no published reference
     assert quantities["angle"]["frequency"] == pytest.approx(0.5, rel=1e-9)
     assert quantities["c_L"]["frequency"] == pytest.approx(0.5, rel=1e-2)
     assert quantities["c_D"]["frequency"] == pytest.approx(1.0, rel=1e-2)
-    for name, harmonic, phase in (("c_L", 3.28, 79.6), ("c_M", 0.93, 109.4)):
-        assert quantities[name]["harmonic"] == pytest.approx(harmonic, rel=0.03), name
-        assert quantities[name]["phase"] == pytest.approx(phase, abs=3.0), name
+    for name, harmonic, phase in (("c_L", 2.7998, 82.55), ("c_M", 0.8286, 113.82)):
+        assert quantities[name]["harmonic"] == pytest.approx(harmonic, rel=5e-3), name
+        assert quantities[name]["phase"] == pytest.approx(phase, abs=0.5), name
 
 
 @pytest.mark.parametrize("order", [2, 4])
