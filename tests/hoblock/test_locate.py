@@ -106,6 +106,19 @@ def test_places_are_followed_through_a_moving_mesh() -> None:
     assert len(visited) > 1
 
 
+@pytest.mark.parametrize("order", [1, 4])
+def test_on_a_face_the_answer_does_not_depend_on_where_the_place_was(order: int) -> None:
+    mesh = ring(order, count=3)
+    X = mesh.coordinates
+    face = X[:, order + (order + 1) * (order // 2)]  # a node on side 1 of every element
+    for place in face:
+        expected = locate(mesh, tuple(place))
+        around = np.flatnonzero(np.abs(X - place).max(axis=2).min(axis=1) < 1e-12)
+        assert expected.element == around.min()
+        for element in around:
+            assert find(mesh, tuple(place), Location(int(element), 0.1, -0.2)) == expected
+
+
 def test_a_place_that_the_mesh_has_left_is_not_found() -> None:
     mesh = ring(3)
     last = locate(mesh, (1.3, 0.2))

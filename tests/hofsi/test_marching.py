@@ -199,6 +199,8 @@ type = "do-nothing"
 on = "right"
 x = "0.4*sin(3*t)"
 y = 0
+[nonlinear]
+tolerance = 1e-12
 [time]
 dt = 0.05
 steps = 10

@@ -57,7 +57,7 @@ def test_a_run_that_is_completed(short: Case, tmp_path: Path) -> None:
     for name in ("u_x", "lift"):
         assert [float(row[name]) for row in rows] == list(result.series[name])
         assert np.abs(result.series[name]).min() > 0.0
-    assert stream.getvalue().splitlines()[-1].startswith("step 3/3  t 0.3  dt 0.1  ")
+    assert any(line.startswith("step 3/3  t 0.3  dt 0.1  ") for line in stream.getvalue().splitlines())
 
 
 def test_the_summary_is_complete(short: Case, tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_the_summary_is_complete(short: Case, tmp_path: Path) -> None:
     assert data["quality"]["min_det_J"] == min(float(row["min_det_J"]) for row in steps)
     assert 0.0 < data["quality"]["scaled_jacobian_min"] <= data["quality"]["scaled_jacobian_mean"] <= 1.0
     u_x = data["quantities"]["u_x"]
-    assert sorted(u_x) == ["amplitude", "frequency", "last", "max", "mean", "min", "t_max", "t_min"]
+    assert set(u_x) == {"last", "max", "t_max", "min", "t_min", "mean", "amplitude", "frequency", "harmonic", "phase"}
     assert u_x["last"] == result.series["u_x"][-1]
     assert (u_x["max"], u_x["t_max"]) == (max(result.series["u_x"]), result.times[result.series["u_x"].argmax()])
     assert (u_x["mean"], u_x["amplitude"], u_x["frequency"]) == (None, None, None)

@@ -144,3 +144,46 @@ def test_a_quantity_that_is_missing_after_the_last_period_has_a_mean_but_no_freq
     u = np.sin(PI2 * times)
     found = statistics(times, {"u": u, "p": np.where(times > 5.2, np.nan, u)}, "u")["p"]
     assert (found.last, found.mean, found.frequency) == (None, pytest.approx(0.0, abs=1e-3), None)
+
+
+@pytest.mark.parametrize("shift", [-150.0, -40.0, 0.0, 75.0, 180.0])
+def test_the_phase_is_by_how_much_a_series_is_ahead(shift: float) -> None:
+    times = np.arange(0.0, 6.0, 0.01)
+    motion = 0.4 * np.sin(PI2 * 0.9 * times)
+    force = 3.0 - 2.0 * np.sin(PI2 * 0.9 * times + np.radians(shift)) + 0.7 * np.cos(3.0 * PI2 * 0.9 * times)
+    found = statistics(times, {"force": -force, "motion": motion}, "motion")
+    assert found["motion"].phase == 0.0
+    assert found["motion"].harmonic == pytest.approx(0.4, rel=2e-3)
+    assert found["force"].harmonic == pytest.approx(2.0, rel=2e-3)
+    phase = found["force"].phase
+    assert phase is not None
+    assert -180.0 < phase <= 180.0
+    assert (phase - shift + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.02)
+
+
+def test_phases_need_no_equal_steps_and_converge_at_second_order() -> None:
+    def error(steps: int) -> float:
+        times = np.linspace(0.0, 1.0, steps) ** 1.3 * 5.0
+        series = {"a": np.sin(PI2 * times), "b": np.sin(PI2 * times + 0.5)}
+        phase = statistics(times, series, "a")["b"].phase
+        assert phase is not None
+        return abs(np.radians(phase) - 0.5)
+
+    assert error(200) < 2e-3
+    assert error(800) < error(200) / 10.0
+
+
+def test_what_does_not_oscillate_with_the_motion_has_no_phase() -> None:
+    times = np.arange(0.0, 6.0, 0.01)
+    series = {
+        "motion": np.sin(PI2 * times),
+        "constant": np.full(len(times), 2.0),
+        "twice": np.cos(2.0 * PI2 * times),
+        "gone": np.where(times > 4.3, np.nan, np.sin(PI2 * times)),
+    }
+    found = statistics(times, series, "motion")
+    assert found["constant"].phase is None
+    assert found["twice"].phase is None
+    assert found["twice"].harmonic == pytest.approx(0.0, abs=1e-6)
+    assert (found["gone"].phase, found["gone"].harmonic) == (None, None)
+    assert statistics(times, series, None)["motion"].phase is None

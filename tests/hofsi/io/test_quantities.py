@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -10,7 +11,17 @@ import pytest
 from hoblock.errors import SceneError
 from hoblock.io.table import Table
 from hoblock.scene import MeshScene
-from hofsi.case import Force, Point, PressureDifference, Probe
+from hofsi.case import (
+    FlowBalance,
+    FlowRate,
+    FluidIntegral,
+    Force,
+    MeanPressure,
+    Moment,
+    Point,
+    PressureDifference,
+    Probe,
+)
 from hofsi.errors import CaseError
 from hofsi.io.quantities import read_quantity
 
@@ -49,6 +60,36 @@ def test_coefficient_is_a_force_with_a_factor() -> None:
     assert force.factor == pytest.approx(500.0)
 
 
+MOMENT = 'on = "cylinder"\nabout'
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (f'type = "moment"\n{MOMENT} = "A"\nfactor = 3', Moment("q", ("cylinder",), Point(0.6, 0.2, "A"), 3.0)),
+        ('type = "flow-rate"\non = ["flag", "cylinder"]', FlowRate("q", ("flag", "cylinder"))),
+        ('type = "flow-rate"\non = "flag"\nrelative_to = "mesh"', FlowRate("q", ("flag",), relative=True)),
+        ('type = "flow-balance"', FlowBalance("q")),
+        ('type = "mean-pressure"\non = "flag"', MeanPressure("q", ("flag",))),
+        ('type = "kinetic-energy"', FluidIntegral("q", "kinetic-energy")),
+        ('type = "continuity-residual"', FluidIntegral("q", "continuity-residual")),
+        ('type = "probe"\nfield = "vorticity"\nat = [1, 2]', Probe("q", "vorticity", None, Point(1, 2), "fluid")),
+    ],
+)
+def test_quantities_of_the_fluid(text: str, expected: Any) -> None:
+    assert read(text) == replace(expected, place="quantities.q")
+
+
+def test_moment_about_a_place_that_moves() -> None:
+    moment = read(f'type = "moment-coefficient"\n{MOMENT} = ["r*t", 1]\ndensity = 2\nvelocity = 3\nlength = 0.5')
+    assert moment.factor == pytest.approx(2.0 / (2.0 * 9.0 * 0.25))
+    assert [float(part.evaluate(t=2.0)) for part in moment.about] == pytest.approx([0.1, 1.0])
+
+
+def test_function_of_time() -> None:
+    assert float(read('type = "expression"\nvalue = "r*t**2"').value.evaluate(t=2.0)) == pytest.approx(0.2)
+
+
 def test_pressure_difference() -> None:
     expected = PressureDifference("q", Point(0.15, 0.2), Point(0.6, 0.2, "A"), "quantities.q")
     assert read('type = "pressure-difference"\nfrom = [0.15, 0.2]\nto = "A"') == expected
@@ -69,6 +110,15 @@ def test_pressure_difference() -> None:
         (f'type = "coefficient"\n{FORCE}\ndensity = 1\nvelocity = 0\nlength = 1', r"quantities.q.velocity: got 0"),
         (f'type = "coefficient"\n{FORCE}\nvelocity = 1\nlength = 1', r"q.density: the required key is missing"),
         ('type = "pressure-difference"\nfrom = "A"', r"quantities.q.to: the required key is missing"),
+        ('type = "flow-rate"', r"quantities.q.on: the required key is missing"),
+        (
+            'type = "flow-rate"\non = "flag"\nrelative_to = "body"',
+            r"relative_to: got 'body'. Expected one of",
+        ),
+        ('type = "moment"\non = "flag"', r"quantities.q.about: the required key is missing"),
+        ('type = "moment"\non = "flag"\nabout = ["x", 0]', r"q.about\[0\]: .* the name 'x' has no meaning here"),
+        ('type = "expression"\nvalue = "y"', r"quantities.q.value: .* the name 'y' has no meaning here"),
+        ('type = "kinetic-energy"\non = "flag"', r"quantities.q.on: unknown key"),
     ],
 )
 def test_mistakes(text: str, match: str) -> None:
@@ -90,6 +140,8 @@ def test_names_that_no_table_can_have(name: str) -> None:
         ('type = "probe"\nat = "a"\nfield = "pressure"', r"q.at: got the unknown name 'a'. Did you mean 'A'"),
         ('type = "force"\non = "flg"\ncomponent = "x"', r"q.on: got the unknown name 'flg'. Did you mean 'flag'"),
         ('type = "probe"\nat = "A"\nfield = "pressure"\ncomponent = "x"', r"component: pressure has no components"),
+        ('type = "probe"\nat = "A"\nfield = "vorticity"\ncomponent = "x"', r"component: vorticity has no components"),
+        ('type = "moment"\non = "flag"\nabout = "B"', r"q.about: got the unknown name 'B'"),
         ('type = "probe"\nat = "A"\nfield = "pressure"\nof = "solid"', r"q.of: got 'solid', .* expected 'fluid'"),
     ],
 )

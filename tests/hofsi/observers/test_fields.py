@@ -19,6 +19,7 @@ from hofsi.observers.fields import FieldWriter
 from hofsi.plan import plan
 from hofsi.records import StepRecord
 from hofsi.simulate import simulate
+from hofsi.solvers.fluid_vorticity import FluidVorticity
 
 Read = Callable[..., Case]
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ def test_fields_of_a_coupled_step(read_changed: Read, tmp_path: Path) -> None:
     assert problem.fluid is not None
     assert problem.solid is not None
     points, fields = _read(tmp_path / "fields" / "fluid_000005.vtu")
-    assert set(fields) == {"velocity", "pressure", "mesh_displacement"}
+    assert set(fields) == {"velocity", "pressure", "vorticity", "mesh_displacement"}
     moved = state.mesh.mesh.points
     assert np.abs(moved - problem.fluid.mesh.points).max() > 1e-6
     np.testing.assert_allclose(points[:, :2], moved, rtol=0, atol=1e-14)
@@ -92,6 +93,9 @@ def test_fields_of_a_coupled_step(read_changed: Read, tmp_path: Path) -> None:
     np.testing.assert_allclose(fields["mesh_displacement"][:, :2], displaced, rtol=0, atol=1e-14)
     pressure = pressure_at_nodes(problem.fluid.solver.space, state.fluid.pressure)
     np.testing.assert_allclose(fields["pressure"], pressure, rtol=0, atol=1e-14)
+    vorticity = FluidVorticity(problem.fluid.mesh).at_nodes(moved, state.fluid.velocity)
+    np.testing.assert_allclose(fields["vorticity"], vorticity, rtol=0, atol=1e-13)
+    assert np.abs(vorticity).max() > 0.1
 
     points, fields = _read(tmp_path / "fields" / "solid_000005.vtu")
     assert set(fields) == {"displacement", "velocity", "cauchy_stress", "von_mises"}
@@ -135,7 +139,7 @@ def test_a_fluid_alone_on_a_mesh_at_rest(read_changed: Read, fluid_alone: str, t
     for _ in _observed(problem, writer):
         pass
     writer.close()
-    assert set(_read(tmp_path / "fields" / "fluid_000003.vtu")[1]) == {"velocity", "pressure"}
+    assert set(_read(tmp_path / "fields" / "fluid_000003.vtu")[1]) == {"velocity", "pressure", "vorticity"}
     assert [path.name for path in sorted(tmp_path.iterdir())] == ["fields", "fluid.pvd"]
 
 

@@ -254,3 +254,45 @@ def test_edges_inside_the_fluid_are_reported(flows):
     solver = flows.solver(generate(structure, 2), [case.NoSlip(("around",))])
     with pytest.raises(CaseError, match="2 element sides of middle have the fluid on both sides"):
         BoundaryForce(solver, ["middle"])
+
+
+@pytest.mark.parametrize("outlet", ["do-nothing", "traction", "parallel", "given"])
+def test_every_side_of_a_channel_has_its_moment(flows, outlet):
+    """Pressure falls linearly, shear is the same everywhere: moments about a point far from everything."""
+    solver, state, level = poiseuille(flows, 3, outlet)
+    about = np.array([-0.7, 0.4])
+    mean = level + DROP / 2.0
+    lever = LENGTH / 2.0 + 0.7
+    tilt = DROP / LENGTH * LENGTH**3 / 12.0  # of the pressure along a wall about its middle
+    expected = {
+        "bottom": -LENGTH * mean * lever + tilt + 0.4 * SHEAR,
+        "top": LENGTH * mean * lever - tilt - 0.6 * SHEAR,
+        "left": (level + DROP) * (0.5 - 0.4),
+        "right": -level * (0.5 - 0.4),
+    }
+    # On upright sides the shear of the profile has no resultant, but none of it acts across the lever either.
+    for name in ("bottom", "top", "left", "right"):
+        computed = BoundaryForce(solver, [name]).moment(state, about)
+        assert computed == pytest.approx(expected[name], abs=1e-11), name
+
+
+def test_the_moment_changes_with_the_point_as_that_of_a_force_does(flows):
+    solver, state, _ = poiseuille(flows, 2, "do-nothing")
+    wall = BoundaryForce(solver, ["bottom"])
+    force = wall.evaluate(state)
+    shift = np.array([0.3, -1.1])
+    change = wall.moment(state, shift) - wall.moment(state, np.zeros(2))
+    assert change == pytest.approx(-(shift[0] * force[1] - shift[1] * force[0]), abs=1e-12)
+
+
+@pytest.mark.parametrize("order", [3, 5])
+def test_moment_between_cylinders_that_turn(flows, order):
+    """Couette's flow: 4 π μ ω r₁² r₂²/(r₂² - r₁²) on the inner one, the same the other way round outside."""
+    conditions = [flows.velocity("inner", "-y", "x"), case.NoSlip(("outer",))]
+    # Convection in advective form conserves angular momentum only as well as the velocity is free of divergence.
+    solver = flows.solver(flows.annulus(order, sectors=8, rings=3), conditions, viscosity=0.2, model="stokes")
+    state = flows.steady(solver)
+    exact = 4.0 * np.pi * 0.2 * 0.25 / 0.75
+    inner, outer = (BoundaryForce(solver, [name]).moment(state, np.array([0.0, 0.0])) for name in ("inner", "outer"))
+    assert inner == pytest.approx(-exact, rel={3: 2e-4, 5: 1e-6}[order])
+    assert inner + outer == pytest.approx(0.0, abs=1e-11)  # angular momentum is conserved

@@ -198,12 +198,13 @@ def find(mesh: QuadMesh, target: tuple[float, float], start: Location | None = N
     mesh : QuadMesh
     target : (float, float)
     start : Location, optional
-        Where the place was before the mesh moved. As long as it stays in that element no other one is looked at.
+        Where the place was before the mesh moved. As long as it stays inside that element no other one is looked at;
+        the answer does not depend on it.
     """
     x = np.asarray(target, dtype=float)[None, :]
     if start is not None:
         kept = _solve(mesh, np.array([start.element]), x, np.array([[start.xi, start.eta]]))
-        if kept.inside[0]:
+        if kept.inside[0] and np.abs(kept.xi).max() < 1.0 - _INSIDE:  # on a face another element may come first
             return Location(start.element, float(kept.xi[0, 0]), float(kept.xi[0, 1]))
     return Locator(mesh).find(x)[0]
 

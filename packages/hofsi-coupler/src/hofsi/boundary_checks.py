@@ -3,12 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TypeAlias
 
-from hofsi.case import Case, Force, Motion, Pressure, Solid, SolidCondition, Traction
+from hofsi.case import (
+    Case,
+    FlowRate,
+    Force,
+    MeanPressure,
+    Moment,
+    Motion,
+    Pressure,
+    Solid,
+    SolidCondition,
+    Traction,
+)
 from hofsi.edge_owners import FLUID, Edge, EdgeOwners, edges_of, in_words, quad_edges, solid_label
 from hofsi.errors import CaseError
 
-__all__ = ["check_fluid_boundaries", "check_forces", "check_motions", "check_named_edges", "check_solid_boundaries"]
+__all__ = [
+    "check_fluid_boundaries",
+    "check_motions",
+    "check_named_edges",
+    "check_quantities",
+    "check_solid_boundaries",
+]
+
+_OnEdges: TypeAlias = Force | Moment | FlowRate | MeanPressure
 
 
 class _Taken:
@@ -120,30 +140,46 @@ def check_motions(case: Case, owners: EdgeOwners) -> None:
             taken.add(edge, name, motion.place)
 
 
-def check_forces(case: Case, owners: EdgeOwners) -> None:
-    """Check that forces are asked for on boundaries, each of the fluid or of solids but not of both.
+def check_quantities(case: Case, owners: EdgeOwners) -> None:
+    """Check that forces and flows are asked for on boundaries.
 
     Raises
     ------
     CaseError
-        A force on an edge that is not at a boundary, or on edges of the fluid and dry edges of solids.
+        A quantity of edges that are not at a boundary, a force on edges of the fluid and dry edges of solids, or a
+        moment, flow rate or mean pressure on dry edges.
     """
     for quantity in case.quantities:
-        if not isinstance(quantity, Force):
-            continue
-        found: dict[str, str] = {}
-        for name, edge in edges_of(case.mesh, quantity.on):
-            found.setdefault(_body_at(case, owners, quantity, name, edge), _edge(name, edge))
-        if len(found) == 2:
+        if isinstance(quantity, Force):
+            _expect_one_body(case, owners, quantity)
+        elif isinstance(quantity, Moment | FlowRate | MeanPressure) and case.fluid is not None:
+            _expect_fluid(case, owners, quantity)
+
+
+def _expect_one_body(case: Case, owners: EdgeOwners, quantity: Force) -> None:
+    found: dict[str, str] = {}
+    for name, edge in edges_of(case.mesh, quantity.on):
+        found.setdefault(_body_at(case, owners, quantity, name, edge), _edge(name, edge))
+    if len(found) == 2:
+        raise CaseError(
+            f"{found['fluid']} is at the fluid and {found['solid']} at a solid alone; expected one kind: there the "
+            "force is that of the fluid, here that of the solid. Make two quantities of it",
+            f"{quantity.place}.on",
+        )
+
+
+def _expect_fluid(case: Case, owners: EdgeOwners, quantity: _OnEdges) -> None:
+    for name, edge in edges_of(case.mesh, quantity.on):
+        if _body_at(case, owners, quantity, name, edge) == "solid":
             raise CaseError(
-                f"{found['fluid']} is at the fluid and {found['solid']} at a solid alone; expected one kind: there the "
-                "force is that of the fluid, here that of the solid. Make two quantities of it",
+                f"{_edge(name, edge)} is at a solid alone, and this quantity is of the fluid; expected an edge at the "
+                "boundary of the fluid. Use another name",
                 f"{quantity.place}.on",
             )
 
 
-def _body_at(case: Case, owners: EdgeOwners, quantity: Force, name: str, edge: Edge) -> str:
-    """The body whose force on an edge is meant: "fluid", also where it touches a solid, or "solid"."""
+def _body_at(case: Case, owners: EdgeOwners, quantity: _OnEdges, name: str, edge: Edge) -> str:
+    """The body that is meant on an edge: "fluid", also where it touches a solid, or "solid"."""
     labels = owners.of[edge]
     if owners.is_wet(edge) or labels == (FLUID,):
         return "fluid"

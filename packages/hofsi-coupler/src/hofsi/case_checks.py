@@ -13,18 +13,21 @@ from hofsi.case import (
     Fluid,
     FluidCondition,
     Force,
+    NoSlip,
     Pressure,
     Probe,
     Roller,
+    Slip,
     Solid,
     Steady,
+    TimeFunction,
     Traction,
     Velocity,
 )
 from hofsi.edge_owners import FLUID, EdgeOwners, components, in_words, named_edges, quad_edges, solid_label
 from hofsi.errors import CaseError
 
-__all__ = ["check_case", "check_order"]
+__all__ = ["check_case", "check_order", "expressions"]
 
 
 def check_case(case: Case) -> None:
@@ -47,11 +50,12 @@ def check_case(case: Case) -> None:
     boundary_checks.check_fluid_boundaries(case, owners)
     boundary_checks.check_solid_boundaries(case, owners)
     boundary_checks.check_motions(case, owners)
-    boundary_checks.check_forces(case, owners)
+    boundary_checks.check_quantities(case, owners)
     _check_quantities(case)
     _check_enclosed(case, owners)
     if isinstance(case.time, Steady):
         _check_steady(case)
+        _check_drifting(case, owners)
         _check_floating(case)
 
 
@@ -105,8 +109,8 @@ def _check_solid_names(case: Case) -> None:
 
 def _check_quantities(case: Case) -> None:
     for quantity in case.quantities:
-        if isinstance(quantity, Force):
-            continue  # of the fluid or of solids: where its edges are
+        if isinstance(quantity, Force | TimeFunction):
+            continue  # of the fluid or of solids, where its edges are; of nothing
         needs_solid = isinstance(quantity, Probe) and quantity.of == "solid"
         if needs_solid and not case.solids:
             hint = 'Remove the quantity, or set of = "fluid"'
@@ -150,7 +154,7 @@ def _is_open(condition: FluidCondition) -> bool:
 
 
 def _check_steady(case: Case) -> None:
-    for expression in _expressions(case):
+    for expression in expressions(case):
         if "t" in expression.variables_used:
             raise CaseError(
                 f'"{expression.text}" depends on t, and the case is steady. Remove t, or give dt and end in [time] '
@@ -167,7 +171,27 @@ def _check_steady(case: Case) -> None:
         )
 
 
-def _expressions(case: Case) -> Iterator[Expression]:
+def _check_drifting(case: Case, owners: EdgeOwners) -> None:
+    """A steady fluid whose boundary gives tractions alone may have any uniform velocity on top."""
+    if case.fluid is None:
+        return
+    held = frozenset(
+        edge
+        for condition in case.fluid.boundaries
+        if isinstance(condition, Velocity | NoSlip | Slip)
+        for name in condition.on
+        for edge in named_edges(case.mesh, name)
+    )
+    for part in components(quad for group in case.fluid.blocks for quad in case.mesh.blocks[group]):
+        if not part & held and not any(owners.is_wet(edge) for edge in part):
+            raise CaseError(
+                "no condition gives a velocity, only tractions or pressures: the steady velocity is not determined. "
+                'Give an edge type = "velocity", "no-slip" or "slip", or march in time',
+                "fluid.boundary",
+            )
+
+
+def expressions(case: Case) -> Iterator[Expression]:
     """All expressions that may depend on time."""
     materials = (*((case.fluid,) if case.fluid else ()), *case.solids)
     for material in materials:

@@ -18,7 +18,7 @@ from hofsi.version import __version__
 __all__ = ["main"]
 
 _BAD_INPUT, _NOT_CONVERGED, _INTERRUPTED = 2, 3, 130
-_COLUMNS = ("quantity", "last", "mean ± amplitude", "frequency")
+_COLUMNS = ("quantity", "last", "mean ± amplitude", "frequency", "phase")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,14 +77,19 @@ def _parser() -> argparse.ArgumentParser:
 def _check(options: argparse.Namespace) -> int:
     """Everything that a run does before its first step."""
     from hofsi.build import build
+    from hofsi.notes import notes
     from hofsi.plan import plan
     from hofsi.quantities import evaluators
 
     case = load_case(options.scene, options.changes)
     lines = plan(case).lines()
-    evaluators(build(case))
+    problem = build(case)
+    evaluators(problem)
+    known = notes(problem)
     print(case.title or Path(case.file).name)
     print("\n".join(lines))
+    if known:
+        print("\n".join(["notes:", *(f"  {text}." for text in known)]))
     return 0
 
 
@@ -136,12 +141,15 @@ def _report(summary: Mapping[str, Any], directory: Path) -> list[str]:
 def _table(quantities: Mapping[str, Mapping[str, float | None]]) -> list[str]:
     if not quantities:
         return []
-    rows = [_COLUMNS]
+    rows: list[tuple[str, ...]] = [_COLUMNS]
     for name, values in quantities.items():
-        mean, amplitude = values["mean"], values["amplitude"]
+        mean, amplitude, phase = values["mean"], values["amplitude"], values["phase"]
         oscillation = "–" if mean is None or amplitude is None else f"{mean:.6g} ± {amplitude:.6g}"
-        rows.append((name, _number(values["last"]), oscillation, _number(values["frequency"])))
-    widths = [max(len(row[k]) for row in rows) for k in range(len(_COLUMNS))]
+        ahead = "–" if phase is None else f"{phase:.2f}°"
+        rows.append((name, _number(values["last"]), oscillation, _number(values["frequency"]), ahead))
+    if all(values["phase"] is None for values in quantities.values()):
+        rows = [row[:-1] for row in rows]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Literal, TextIO, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TextIO, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from hofsi.build import Problem, build
 from hofsi.case import Case, OutputSettings, Steady
 from hofsi.errors import ConvergenceError
 from hofsi.io.summary import machine, versions, write_summary
+from hofsi.notes import notes
 from hofsi.observers.observer import Observer
 from hofsi.observers.progress import Progress
 from hofsi.observers.quality import MeshQuality
@@ -26,6 +27,9 @@ from hofsi.quantities import evaluators
 from hofsi.records import StepRecord
 from hofsi.simulate import simulate
 from hofsi.statistics import statistics
+
+if TYPE_CHECKING:
+    from hofsi.observers.resolution import FlowResolutionWatch
 
 Array = NDArray[np.float64]
 Status: TypeAlias = Literal["completed", "failed", "interrupted", "running"]
@@ -100,13 +104,15 @@ def run(
     try:
         problem = build(case)
         with problem.clock.phase("build"):
-            read = evaluators(problem)
+            read, known = evaluators(problem), notes(problem)
     except SceneError as error:
         error.file = error.file or case.file
         raise
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
     report = _Report(problem, folder, read, progress, began, changes)
+    for text in known:
+        report.note(text)
     return report.follow()
 
 
@@ -147,9 +153,22 @@ class _Report:
         self._steps = StepTable(folder / "steps.csv", problem.counts)
         # What is cheap and must not be lost comes first.
         self._observers[:0] = [("quantities", self._quantities), ("tables", self._steps), ("quality", self._quality)]
-        if progress is not None:
-            live = Progress(progress, None if isinstance(time, Steady) else time.steps)
-            self._observers.insert(0, ("tables", live))
+        self._notes: list[str] = []
+        self._live = None if progress is None else Progress(progress, None if isinstance(time, Steady) else time.steps)
+        if self._live is not None:
+            self._observers.insert(0, ("tables", self._live))
+        self._resolution: FlowResolutionWatch | None = None
+        if problem.fluid is not None and problem.fluid.solver.convecting:
+            from hofsi.observers.resolution import FlowResolutionWatch
+
+            self._resolution = FlowResolutionWatch(problem.fluid, self.note)
+            self._observers.append(("quality", self._resolution))
+
+    def note(self, text: str) -> None:
+        """Tell the user something, and keep it for the summary."""
+        self._notes.append(text)
+        if self._live is not None:
+            self._live.say(f"note: {text}.")
 
     def follow(self) -> Result:
         """Simulate, observe every step, and leave everything written whatever happens."""
@@ -224,7 +243,9 @@ class _Report:
             "seconds": self._seconds(),
             "counts": self._counts(),
             "t": None if self._last is None else self._last.time,
+            "notes": list(self._notes),
             "quality": self._quality.summary(),
+            "resolution": {} if self._resolution is None else self._resolution.summary(),
             "period_of": case.output.period_of,
             "quantities": {name: asdict(values) for name, values in numbers.items()},
         }

@@ -1,4 +1,4 @@
-"""What a series says in the end: last and extreme values; mean, amplitude and frequency of an oscillation."""
+"""What a series says in the end: last and extreme values; mean, amplitude, frequency and phase of an oscillation."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["Period", "Statistics", "last_period", "statistics", "upward_crossings"]
+__all__ = ["Period", "Statistics", "fundamental", "last_period", "statistics", "upward_crossings"]
 
 _BAND = 0.25  # of the amplitude: a crossing counts when the series went this far below before and above after it
 _NOISE = 0.2  # of the amplitude: with more noise than this there is no oscillation to speak of
 _STEADY = 1e-9  # peak to peak, relative to the largest value, from which a series does not move
+_ABSENT = 1e-6  # of the amplitude: a part of an oscillation that is smaller has no phase
 _DEAD = 2.0  # periods without a crossing after which an oscillation is over
 _REFINEMENTS = 30  # of the level, at most; a decaying oscillation needs one for every few periods
 _PERIODS = 5  # at most as many of the last periods are used for a frequency
@@ -50,6 +51,12 @@ class Statistics:
         (max + min)/2 and (max - min)/2 over the last full period of the quantity that defines it.
     frequency : float or None
         Of the quantity itself, from its own crossings during the last periods.
+    harmonic : float or None
+        Amplitude of the part that oscillates with the frequency of the quantity that defines the period: twice the
+        modulus of the first Fourier coefficient over the last full periods, at most five.
+    phase : float or None
+        In degrees, by how much that part is ahead of that of the quantity that defines the period, in (-180, 180]; None
+        where there is no such part to speak of.
     """
 
     last: float | None
@@ -60,6 +67,8 @@ class Statistics:
     mean: float | None = None
     amplitude: float | None = None
     frequency: float | None = None
+    harmonic: float | None = None
+    phase: float | None = None
 
 
 def statistics(times: Array, series: Mapping[str, Array], period_of: str | None) -> dict[str, Statistics]:
@@ -74,11 +83,46 @@ def statistics(times: Array, series: Mapping[str, Array], period_of: str | None)
     period_of : str or None
         The series whose last full period defines means and amplitudes; None for no period.
     """
-    period = None if period_of is None or period_of not in series else last_period(times, series[period_of])
-    return {name: _statistics(times, values, period) for name, values in series.items()}
+    if period_of is None or period_of not in series or (period := last_period(times, series[period_of])) is None:
+        return {name: _statistics(times, values, None, None) for name, values in series.items()}
+    reference = fundamental(times, series[period_of], period)
+    return {name: _statistics(times, values, period, reference) for name, values in series.items()}
 
 
-def _statistics(times: Array, values: Array, period: Period | None) -> Statistics:
+def fundamental(times: Array, values: Array, period: Period) -> complex | None:
+    """Return the complex amplitude c of a series' part Re c exp(2πi f t) over the last full periods.
+
+    The integral of the straight lines through the samples, so that it needs no equal steps; of second order in them.
+
+    Parameters
+    ----------
+    times, values : ndarray, shape (n,)
+    period : Period
+        With the frequency f, and the times between which to integrate.
+
+    Returns
+    -------
+    complex or None
+        None if a value there is not finite.
+    """
+    inside = (times > period.first) & (times < period.end)
+    t = np.concatenate([[period.first], times[inside], [period.end]])
+    v = np.interp(t, times, values)
+    if not np.isfinite(v).all():
+        return None
+    v = v - np.trapezoid(v, t) / (t[-1] - t[0])
+    wave = np.exp(-2.0j * np.pi * period.frequency * t)
+    return complex(2.0 * np.trapezoid(v * wave, t) / (t[-1] - t[0]))
+
+
+def _phase(part: complex, reference: complex, amplitude: float) -> float | None:
+    """Degrees by which a part is ahead of the reference; None if it is less than 1e-6 of the whole oscillation."""
+    if abs(part) <= _ABSENT * amplitude or reference == 0.0:
+        return None
+    return float(np.degrees(np.angle(part / reference)))
+
+
+def _statistics(times: Array, values: Array, period: Period | None, reference: complex | None) -> Statistics:
     finite = np.isfinite(values)
     last = float(values[-1]) if len(values) and finite[-1] else None
     if not finite.any():
@@ -90,7 +134,11 @@ def _statistics(times: Array, values: Array, period: Period | None) -> Statistic
     if period is None or not window.size or not np.isfinite(window).all():
         return Statistics(last, *extremes)
     top, bottom = float(window.max()), float(window.min())
-    return Statistics(last, *extremes, (top + bottom) / 2.0, (top - bottom) / 2.0, _frequency(times, values, period))
+    mean, amplitude, frequency = (top + bottom) / 2.0, (top - bottom) / 2.0, _frequency(times, values, period)
+    part = fundamental(times, values, period)
+    if part is None or reference is None or 2.0 * amplitude <= _STEADY * max(abs(top), abs(bottom)):
+        return Statistics(last, *extremes, mean, amplitude, frequency)
+    return Statistics(last, *extremes, mean, amplitude, frequency, abs(part), _phase(part, reference, amplitude))
 
 
 def _window(times: Array, values: Array, period: Period) -> Array:

@@ -3,15 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+if TYPE_CHECKING:
+    from hoblock.expressions import Expression
+    from hofsi.case.materials import VectorExpression
 
 __all__ = [
+    "FlowBalance",
+    "FlowRate",
+    "FluidIntegral",
     "Force",
+    "IntegralName",
+    "MeanPressure",
+    "Moment",
     "Point",
     "PressureDifference",
     "Probe",
     "Quantity",
+    "ScalarQuantity",
+    "TimeFunction",
 ]
+
+
+IntegralName: TypeAlias = Literal[
+    "area", "continuity-residual", "dissipation", "divergence", "enstrophy", "kinetic-energy"
+]
+"""Integrals over the fluid."""
 
 
 @dataclass(frozen=True)
@@ -30,16 +48,16 @@ class Probe:
     Attributes
     ----------
     name : str
-    field : {"displacement", "velocity", "pressure"}
+    field : {"displacement", "velocity", "pressure", "vorticity"}
     component : {"x", "y", "magnitude"} or None
-        None for pressure.
+        None for pressure and vorticity.
     at : Point
     of : {"fluid", "solid"}
     place : str
     """
 
     name: str
-    field: Literal["displacement", "velocity", "pressure"]
+    field: Literal["displacement", "velocity", "pressure", "vorticity"]
     component: Literal["x", "y", "magnitude"] | None
     at: Point
     of: Literal["fluid", "solid"]
@@ -77,4 +95,77 @@ class PressureDifference:
     place: str = ""
 
 
-Quantity: TypeAlias = Probe | Force | PressureDifference
+@dataclass(frozen=True)
+class Moment:
+    """The moment of the fluid's force on named edges, counter-clockwise, times a factor.
+
+    Attributes
+    ----------
+    name : str
+    on : tuple of str
+        Names of the mesh's edges, outer ones of the fluid or shared with a solid.
+    about : Point or pair of Expression of t
+        A vertex, which moves with the mesh, or a place as a function of time.
+    factor : float
+    place : str
+    """
+
+    name: str
+    on: tuple[str, ...]
+    about: Point | VectorExpression
+    factor: float = 1.0
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class FlowRate:
+    """Flow out of the fluid through named edges, ∫ u·n, or ∫ (u - w)·n relative to their own motion."""
+
+    name: str
+    on: tuple[str, ...]
+    relative: bool = False
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class FlowBalance:
+    """Net flow out of the fluid through its whole boundary, over what flows in."""
+
+    name: str
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class MeanPressure:
+    """Mean pressure of the fluid on named edges."""
+
+    name: str
+    on: tuple[str, ...]
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class FluidIntegral:
+    """An integral over the whole fluid."""
+
+    name: str
+    what: IntegralName
+    place: str = ""
+
+
+@dataclass(frozen=True)
+class TimeFunction:
+    """A given function of time, such as a prescribed motion, that other quantities are compared with."""
+
+    name: str
+    value: Expression
+    place: str = ""
+
+
+ScalarQuantity: TypeAlias = (
+    Probe | PressureDifference | Moment | FlowRate | FlowBalance | MeanPressure | FluidIntegral | TimeFunction
+)
+"""Quantities with one component."""
+
+Quantity: TypeAlias = Force | ScalarQuantity
+"""Quantities of a scene: ``[quantities.NAME]``."""

@@ -104,7 +104,7 @@ class CondensedSystem:
         """Condense and factorise element matrices A of shape (e, k, k)."""
         return self._solved(A, self._factorised)
 
-    def lagged(self, A: Array, factor: CheckedSolver, tolerance: float, limit: int) -> CondensedFactor:
+    def lagged(self, A: Array, factor: CheckedSolver, goal: float, limit: int) -> CondensedFactor:
         """Condense element matrices A of shape (e, k, k) and solve with the factors of an earlier condensed matrix.
 
         Parameters
@@ -112,12 +112,13 @@ class CondensedSystem:
         A : ndarray, shape (e, k, k)
         factor : CheckedSolver
             ``factor`` of a `CondensedFactor` of the same unknowns.
-        tolerance, limit
-            See `hofsi.linear.lagged.LaggedSolver`, which becomes the ``factor`` of the result.
+        goal, limit
+            Norm of the residual, the same in the condensed and in the full system, and iterations; see
+            `hofsi.linear.lagged.LaggedSolver`, which becomes the ``factor`` of the result.
         """
 
         def solver(S: Array) -> LaggedSolver:
-            return LaggedSolver(partial(self._product, S), factor, partial(self._exact, S), tolerance, limit)
+            return LaggedSolver(partial(self._product, S), factor, partial(self._exact, S), goal, limit)
 
         return self._solved(A, solver)
 

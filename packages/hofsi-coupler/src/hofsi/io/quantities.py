@@ -7,13 +7,47 @@ from typing import Literal
 
 from hoblock.io.table import Table
 from hoblock.scene import MeshScene
-from hofsi.case import Force, Point, PressureDifference, Probe, Quantity
+from hofsi.case import (
+    FlowBalance,
+    FlowRate,
+    FluidIntegral,
+    Force,
+    IntegralName,
+    MeanPressure,
+    Moment,
+    Point,
+    PressureDifference,
+    Probe,
+    Quantity,
+    TimeFunction,
+    VectorExpression,
+)
 from hofsi.errors import CaseError
-from hofsi.io.names import check_name, edge_names
+from hofsi.io.names import check_name, choice, edge_names
 
 __all__ = ["read_quantity"]
 
-_TYPES = ("probe", "force", "coefficient", "pressure-difference")
+_INTEGRALS: tuple[IntegralName, ...] = (
+    "area",
+    "continuity-residual",
+    "dissipation",
+    "divergence",
+    "enstrophy",
+    "kinetic-energy",
+)
+_TYPES = (
+    "probe",
+    "pressure-difference",
+    "force",
+    "coefficient",
+    "moment",
+    "moment-coefficient",
+    "flow-rate",
+    "flow-balance",
+    "mean-pressure",
+    *_INTEGRALS,
+    "expression",
+)
 
 
 def read_quantity(name: str, table: Table, mesh: MeshScene, constants: Mapping[str, float]) -> Quantity:
@@ -42,33 +76,55 @@ def read_quantity(name: str, table: Table, mesh: MeshScene, constants: Mapping[s
             f"got the name {name!r}; expected printable characters without spaces around them. Choose another name",
             table.place,
         )
-    quantity: Quantity
-    match table.string("type", choices=_TYPES):
-        case "probe":
-            quantity = _probe(name, table, mesh, constants)
-        case "force":
-            factor = table.number("factor", 1.0)
-            quantity = Force(name, edge_names(table, mesh), _axis(table), factor, table.place)
-        case "coefficient":
-            quantity = Force(name, edge_names(table, mesh), _axis(table), _coefficient(table), table.place)
-        case _:
-            start, end = (_point(table, key, mesh, constants) for key in ("from", "to"))
-            quantity = PressureDifference(name, start, end, table.place)
+    quantity = _quantity(name, table, mesh, constants)
     table.finish()
     return quantity
 
 
+def _quantity(name: str, table: Table, mesh: MeshScene, constants: Mapping[str, float]) -> Quantity:
+    place = table.place
+    match table.string("type", choices=_TYPES):
+        case "probe":
+            return _probe(name, table, mesh, constants)
+        case "pressure-difference":
+            start, end = (_point(table, key, mesh, constants) for key in ("from", "to"))
+            return PressureDifference(name, start, end, place)
+        case "force":
+            factor = table.number("factor", 1.0)
+            return Force(name, edge_names(table, mesh), _axis(table), factor, place)
+        case "coefficient":
+            return Force(name, edge_names(table, mesh), _axis(table), _coefficient(table, 1), place)
+        case "moment":
+            about, factor = _centre(table, mesh, constants), table.number("factor", 1.0)
+            return Moment(name, edge_names(table, mesh), about, factor, place)
+        case "moment-coefficient":
+            about, factor = _centre(table, mesh, constants), _coefficient(table, 2)
+            return Moment(name, edge_names(table, mesh), about, factor, place)
+        case "flow-rate":
+            relative = choice(table, "relative_to", ("space", "mesh"), "space") == "mesh"
+            return FlowRate(name, edge_names(table, mesh), relative, place)
+        case "flow-balance":
+            return FlowBalance(name, place)
+        case "mean-pressure":
+            return MeanPressure(name, edge_names(table, mesh), place)
+        case "expression":
+            return TimeFunction(name, table.expression("value", ("t",), constants), place)
+        case _:
+            return FluidIntegral(name, choice(table, "type", _INTEGRALS, "area"), place)
+
+
 def _probe(name: str, table: Table, mesh: MeshScene, constants: Mapping[str, float]) -> Probe:
     at = _point(table, "at", mesh, constants)
-    match table.string("field", choices=("displacement", "velocity", "pressure")):
+    match table.string("field", choices=("displacement", "velocity", "pressure", "vorticity")):
         case "displacement":
             return Probe(name, "displacement", _component(table), at, _owner(table, "solid", None), table.place)
         case "velocity":
             return Probe(name, "velocity", _component(table), at, _owner(table, "fluid", None), table.place)
-        case _:
+        case field:
             if table.has("component"):
-                raise CaseError("pressure has no components; remove this key", table.place_of("component"))
-            return Probe(name, "pressure", None, at, _owner(table, "fluid", "solid"), table.place)
+                raise CaseError(f"{field} has no components; remove this key", table.place_of("component"))
+            scalar: Literal["pressure", "vorticity"] = "pressure" if field == "pressure" else "vorticity"
+            return Probe(name, scalar, None, at, _owner(table, "fluid", "solid"), table.place)
 
 
 def _owner(
@@ -102,9 +158,17 @@ def _axis(table: Table) -> Literal["x", "y"]:
     return "x" if table.string("component", choices=("x", "y")) == "x" else "y"
 
 
-def _coefficient(table: Table) -> float:
+def _coefficient(table: Table, power: int) -> float:
+    """2/(ρ U² L) of a force, 2/(ρ U² L²) of a moment."""
     density, velocity, length = (table.number(key, positive=True) for key in ("density", "velocity", "length"))
-    return 2.0 / (density * velocity**2 * length)
+    return 2.0 / (density * velocity**2 * length**power)
+
+
+def _centre(table: Table, mesh: MeshScene, constants: Mapping[str, float]) -> Point | VectorExpression:
+    """Read ``about``: a vertex by name, or ``[x, y]``, expressions of t."""
+    if isinstance(table.raw("about"), str):
+        return _point(table, "about", mesh, constants)
+    return table.expression_pair("about", ("t",), constants)
 
 
 def _point(table: Table, key: str, mesh: MeshScene, constants: Mapping[str, float]) -> Point:

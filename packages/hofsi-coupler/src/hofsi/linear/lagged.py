@@ -13,7 +13,7 @@ __all__ = ["LaggedSolver"]
 
 Array = NDArray[np.float64]
 
-_SLACK = 2.0  # of the tolerance, for a residual that GMRES estimates and that is computed here
+_SLACK = 2.0  # of the goal, for a residual that GMRES estimates and that is computed here
 
 
 class LaggedSolver:
@@ -29,8 +29,8 @@ class LaggedSolver:
         Of the earlier matrix.
     factorise : callable
         Makes factors of this one.
-    tolerance : float
-        A solution ends when ‖b - A x‖ ≤ tolerance · ‖b‖.
+    goal : float
+        A solution ends when ‖b - A x‖ is at most that.
     limit : int
         Iterations at most.
 
@@ -53,10 +53,10 @@ class LaggedSolver:
         product: Callable[[Array], Array],
         factor: CheckedSolver,
         factorise: Callable[[], CheckedSolver],
-        tolerance: float,
+        goal: float,
         limit: int,
     ) -> None:
-        self._product, self._factorise, self._tolerance, self._limit = product, factorise, tolerance, limit
+        self._product, self._factorise, self._goal, self._limit = product, factorise, goal, limit
         self.factor = factor
         self.renewed = False
         self.iterations = 0
@@ -81,9 +81,9 @@ class LaggedSolver:
         size = float(np.linalg.norm(b))
         if size == 0.0 or not np.isfinite(size):
             return np.zeros_like(b) if size == 0.0 else None
-        x, count = _gmres(self._product, self.factor.substitute, b, self._tolerance * size, self._limit)
+        x, count = _gmres(self._product, self.factor.substitute, b, self._goal, self._limit)
         self.iterations += count
-        return x if np.linalg.norm(b - self._product(x)) <= _SLACK * self._tolerance * size else None
+        return x if np.linalg.norm(b - self._product(x)) <= _SLACK * self._goal else None
 
 
 def _gmres(

@@ -18,6 +18,7 @@ from hofsi.io.vtu import require_vtk, write_vtu
 from hofsi.records import StepRecord
 
 if TYPE_CHECKING:
+    from hofsi.solvers.fluid_vorticity import FluidVorticity
     from hofsi.solvers.solid import SolidState
     from hofsi.solvers.solid_stress import SolidStress
 
@@ -29,7 +30,7 @@ __all__ = ["FieldWriter"]
 class FieldWriter:
     """Writes every N-th step and the last one: ``fluid.pvd`` and ``solid.pvd``, with their files in ``fields``.
 
-    The fluid has ``velocity`` and ``pressure``, and ``mesh_displacement`` if its mesh moves; the solid has
+    The fluid has ``velocity``, ``pressure``, ``vorticity``, and ``mesh_displacement`` if its mesh moves; the solid has
     ``displacement``, ``velocity`` unless the case is steady, ``cauchy_stress`` (xx, yy, zz, xy, yz, xz) and
     ``von_mises``. Both are written where they are, deformed. The series is complete after every step, whatever happens
     to the run later.
@@ -56,7 +57,7 @@ class FieldWriter:
         require_vtk()
         self._problem, self._directory, self._every = problem, Path(directory), every
         (self._directory / "fields").mkdir(parents=True, exist_ok=True)
-        self._stress = _stress(problem)
+        self._stress, self._vorticity = _stress(problem), _vorticity(problem)
         self._entries: dict[str, list[tuple[float, str]]] = {}
         self._waiting: StepRecord | None = None
 
@@ -77,11 +78,13 @@ class FieldWriter:
     def _write(self, record: StepRecord) -> None:
         fluid, solid, state = self._problem.fluid, self._problem.solid, record.state
         if fluid is not None and state.fluid is not None and state.mesh is not None:
+            points = state.mesh.mesh.points
             fields = {
                 "velocity": state.fluid.velocity,
                 "pressure": pressure_at_nodes(fluid.solver.space, state.fluid.pressure),
             }
-            points = state.mesh.mesh.points
+            if self._vorticity is not None:
+                fields["vorticity"] = self._vorticity.at_nodes(points, state.fluid.velocity)
             if self._problem.case.motions or solid is not None:
                 fields["mesh_displacement"] = points - fluid.mesh.points
             self._add("fluid", record, fluid.mesh, points, fields)
@@ -107,6 +110,14 @@ class FieldWriter:
         entries = self._entries.setdefault(name, [])
         entries.append((record.time, file))
         write_pvd(self._directory / f"{name}.pvd", entries)
+
+
+def _vorticity(problem: Problem) -> FluidVorticity | None:
+    if problem.fluid is None:
+        return None
+    from hofsi.solvers.fluid_vorticity import FluidVorticity
+
+    return FluidVorticity(problem.fluid.mesh)
 
 
 def _stress(problem: Problem) -> SolidStress | None:

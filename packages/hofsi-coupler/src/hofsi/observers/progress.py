@@ -57,6 +57,13 @@ class Progress:
         if now - self._last_line >= self._interval:
             self._show(now)
 
+    def say(self, text: str) -> None:
+        """Write a line of its own."""
+        if self._terminal and self._shown:
+            text = "\r" + text.ljust(shutil.get_terminal_size().columns - 1)
+        self._stream.write(f"{text}\n")
+        self._stream.flush()
+
     def close(self) -> None:
         """Show the last step and end the line."""
         if self._pending:

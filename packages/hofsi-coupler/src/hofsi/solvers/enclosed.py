@@ -86,11 +86,8 @@ class EnclosedRegions:
             If the given velocities do not balance even roughly.
         """
         space = self._space
-        for elements in self._elements:
-            cells = space.velocity_cells[elements]
-            parts = flux[elements] * velocity[cells]
-            net, rounding = float(parts.sum()), 1e-12 * float(np.abs(parts).sum())
-            gross = _gross_flux(cells, flux[elements], velocity)
+        for elements, (net, gross) in zip(self._elements, self.net_flows(velocity, flux), strict=True):
+            rounding = 1e-12 * float(np.abs(flux[elements] * velocity[space.velocity_cells[elements]]).sum())
             if abs(net) > (_LEAK_IN_MOTION if moving else _LEAK) * gross + rounding:
                 raise CaseError(
                     f"the velocities around an enclosed part of the fluid bring in {-net:.4g} per unit time more than "
@@ -103,6 +100,16 @@ class EnclosedRegions:
             shares = (-net / weights.sum()) * (weights @ space.pressure.N)
             for rows, part in zip(space.rows(2), np.split(shares, [space.pressure_boundary], axis=1), strict=True):
                 load[elements, rows] = part
+
+    def net_flows(self, velocity: Array, flux: Array) -> list[tuple[float, float]]:
+        """∮ u·n and about ∮ |u| of each region, for a velocity (n, 2) with the boundary's values."""
+        flows = []
+        for elements in self._elements:
+            cells = self._space.velocity_cells[elements]
+            flows.append(
+                (float((flux[elements] * velocity[cells]).sum()), _gross_flux(cells, flux[elements], velocity))
+            )
+        return flows
 
     def remove_mean(self, pressure: Array, residual: Array, geometry: Geometry, flux: Array) -> None:
         """Subtract each region's mean pressure, and what it did, from the pressure (m,) and the element residuals."""

@@ -41,7 +41,7 @@ class FluidFactors:
         self._system: CondensedSystem | None = None
         self._velocity, self._rate = np.zeros(0), 0.0
 
-    def solve(self, system: FluidSystem, A: Array, r: Array, velocity: Array, rate: float, tolerance: float) -> Array:
+    def solve(self, system: FluidSystem, A: Array, r: Array, velocity: Array, rate: float, goal: float) -> Array:
         """Solve once with element matrices.
 
         Parameters
@@ -54,8 +54,8 @@ class FluidFactors:
             The one that A belongs to.
         rate : float
             Weight of the new velocity in the time derivative that is part of A.
-        tolerance : float
-            Of the residual, relative to the condensed right-hand side; new factors solve more exactly.
+        goal : float
+            Norm of the residual that may be left; new factors solve more exactly.
 
         Returns
         -------
@@ -72,7 +72,7 @@ class FluidFactors:
             if isinstance(solver.factor, CheckedSolver):
                 self._keep(system, solver.factor, velocity, rate)
             return solver.solve(r)
-        lagged = system.lagged(A, self._factor, tolerance, _LIMIT)
+        lagged = system.lagged(A, self._factor, goal, _LIMIT)
         x = lagged.solve(r)
         assert isinstance(lagged.factor, LaggedSolver)
         self._counts.krylov_iterations += lagged.factor.iterations

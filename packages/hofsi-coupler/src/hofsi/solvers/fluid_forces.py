@@ -19,7 +19,7 @@ from hofsi.solvers.fluid import FluidSolver, FluidState
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides"]
+__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides", "named_sides"]
 
 
 def boundary_sides(mesh: QuadMesh) -> Index:
@@ -128,7 +128,7 @@ class BoundaryForce:
     def __init__(self, solver: FluidSolver, names: Sequence[str]) -> None:
         mesh = solver.mesh
         outer = boundary_sides(mesh)
-        chosen = _named_sides(mesh, names, outer)
+        chosen = named_sides(mesh, names)
         self._solver = solver
         self._nodes = np.unique(mesh.cells[chosen[:, 0, None], side_nodes(mesh.order)[chosen[:, 1]]])
         self._loaded = [
@@ -143,23 +143,42 @@ class BoundaryForce:
     def evaluate(self, state: FluidState) -> Array:
         """Return the force at a state that the solver has computed, shape (2,)."""
         force = -state.reaction[self._nodes].sum(axis=0)
-        for condition, sides in self._loaded:
-            force -= np.where(_given(condition), 0.0, self._load(condition, sides, state))
+        for _, load in self._loads(state):
+            force -= load.sum(axis=(0, 1))
         if self._neighbours:
             force += self._neighbours.forces(state).sum(axis=0)
         return np.asarray(force)
 
-    def _load(self, condition: case.FluidCondition, sides: Index, state: FluidState) -> Array:
-        """Integral of the traction that a condition gives, shape (2,)."""
+    def moment(self, state: FluidState, about: Array) -> float:
+        """Return the moment of the same force about a point (2,), counter-clockwise positive.
+
+        The nodal forces balance a rigid rotation of the fluid as they balance a translation: its velocity is in the
+        space of the test functions.
+        """
+        arms = state.points[0] - about
+        moment = -float(_cross(arms[self._nodes], state.reaction[self._nodes]).sum())
+        for x, load in self._loads(state):
+            moment -= float(_cross(x - about, load).sum())
+        if self._neighbours:
+            moment += float(_cross(arms[self._neighbours.nodes], self._neighbours.forces(state)).sum())
+        return moment
+
+    def _loads(self, state: FluidState) -> Iterator[tuple[Array, Array]]:
+        """Places on sides with a given traction, and that traction times length and weight, each (k, q, 2)."""
         solver = self._solver
-        total = np.zeros(2)
-        for group in side_geometry(state.points[0][solver.space.velocity_cells], sides, solver.space.velocity_sides):
-            if isinstance(condition, case.DoNothing):
-                given = _transposed(solver, group, _gradient(solver, group, group.elements, state))
-            else:
-                given = solver.boundary.traction(condition, group, state.time)
-            total += given.sum(axis=(0, 1))
-        return total
+        for condition, sides in self._loaded:
+            X = state.points[0][solver.space.velocity_cells]
+            for group in side_geometry(X, sides, solver.space.velocity_sides):
+                if isinstance(condition, case.DoNothing):
+                    given = _transposed(solver, group, _gradient(solver, group, group.elements, state))
+                else:
+                    given = solver.boundary.traction(condition, group, state.time)
+                yield group.x, np.where(_given(condition), 0.0, given)
+
+
+def _cross(first: Array, second: Array) -> Array:
+    """z component of the product of vectors (..., 2)."""
+    return np.asarray(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0])
 
 
 def _corners(
@@ -198,7 +217,15 @@ def _traction(solver: FluidSolver, group: SideGeometry, elements: Index, state: 
     return np.asarray(along + _transposed(solver, group, gradient) - p[..., None] * group.normals)
 
 
-def _named_sides(mesh: QuadMesh, names: Sequence[str], outer: Index) -> Index:
+def named_sides(mesh: QuadMesh, names: Sequence[str]) -> Index:
+    """Element sides of some named edges at the fluid's boundary, shape (k, 2), each once.
+
+    Raises
+    ------
+    CaseError
+        If a name is unknown or its edges are not at the fluid's boundary.
+    """
+    outer = boundary_sides(mesh)
     for name in names:
         if name not in mesh.edge_groups:
             known = ", ".join(sorted(mesh.edge_groups))

@@ -26,6 +26,8 @@ class FluidState:
     reaction : ndarray, shape (n, 2)
         Nodal momentum residual: what the boundary does to the fluid where it holds it; minus it is the load on a body.
     time : float
+    mesh_velocity : ndarray, shape (n, 2), or None
+        By the formula of the time scheme; None before the first step.
     """
 
     velocities: tuple[Array, ...]
@@ -33,6 +35,7 @@ class FluidState:
     points: tuple[Array, ...]
     reaction: Array
     time: float
+    mesh_velocity: Array | None = None
 
     @property
     def velocity(self) -> Array:

@@ -22,7 +22,7 @@ _ON_THE_WAY = 1e-6  # tolerance of the problems that continuation solves on the 
 _ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else is left of a flow without stress
 _FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
 _ROUGHEST = 1e-3  # relative residual of an iteration's linear system
-_PART = 1e-3  # of the nonlinear tolerance: a linear system need not be solved beyond
+_PART = 1e-3  # of the nonlinear tolerance: what the last linear system may leave
 _UNEXPECTED = 0.25  # of the velocity: a flow further from what was expected needs more than one linearisation
 
 
@@ -197,9 +197,9 @@ class FluidStep:
             velocity = unknowns[: self._expected.size].reshape(-1, 2)
             J = self._operator.matrices(velocity, newton=not picard)
             assert self._residual is not None
-            r, enough = self._residual, _enough(norm / scale, tolerance)
+            r, goal = self._residual, norm * _enough(norm / scale, tolerance)
             system = equations.system(self.points)
-            delta = equations.factors.solve(system, J, r, velocity, self._rate, enough)
+            delta = equations.factors.solve(system, J, r, velocity, self._rate, goal)
             equations.counts.iterations += 1
             unknowns, norm, scale = self._damped(unknowns, delta, norm)
         if not stop:
@@ -246,12 +246,15 @@ class FluidStep:
             (self.points, *self.state.points[:keep]),
             self.reaction(),
             self.time,
+            self.mesh_velocity,
         )
 
 
 def _enough(residual: float, tolerance: float) -> float:
-    """How well an iteration's linear system is worth solving: Newton's method squares the relative residual.
+    """How well an iteration's linear system is worth solving: as far as Newton's method gets, which squares residuals.
 
-    Two digits more cost two iterations and leave an accuracy that does not hang on where the last iteration ends.
+    The last iteration is solved well enough for what it leaves not to count beside the tolerance.
     """
-    return min(_ROUGHEST, max(1e-2 * residual, _PART * tolerance / residual))
+    if residual**2 <= tolerance:
+        return min(_ROUGHEST, _PART * tolerance / residual)
+    return min(_ROUGHEST, residual)

@@ -102,6 +102,13 @@ def test_pressure_is_exact_for_polynomials(coupled: Steps) -> None:
     assert found == pytest.approx(3.0 - 2.0 * INSIDE.x + 5.0 * INSIDE.y, abs=1e-12)
 
 
+def test_vorticity_is_exact_for_polynomials(coupled: Steps) -> None:
+    found = coupled.value(probe("vorticity", None, INSIDE, "fluid"), coupled.record())
+    assert found == pytest.approx(2.0 * INSIDE.x - INSIDE.x + 2.0 * INSIDE.y, abs=1e-12)
+    away = coupled.record(1, lambda points: points + np.array([1.0, 0.0]))
+    assert np.isnan(coupled.value(probe("vorticity", None, INSIDE, "fluid"), away))
+
+
 def test_displacement_and_velocity_of_the_solid_are_those_of_the_material_point(coupled: Steps) -> None:
     d = displacement(np.array(IN_SOLID.x), np.array(IN_SOLID.y))
     record = coupled.record()
