@@ -24,10 +24,9 @@ def runs(tmp_path_factory):
 
 @pytest.mark.parametrize("mover", ["barrier", "pseudo-solid", "angle-optimisation"])
 def test_the_flap_reaches_its_limit_cycle(runs, mover):
-    assert len(runs.times[mover]) == 800
+    assert len(runs.times[mover]) == 1600
     assert runs.min_det_J[mover] > 0.0
-    last = [value for _, value in runs.peaks(mover)[-3:]]
-    assert min(last) > 0.5 or last[0] < last[1] < last[2]
+    assert all(0.75 < value < 1.1 for _, value in runs.peaks(mover)[-3:])
 
 
 @pytest.mark.parametrize("mover", ["barrier", "pseudo-solid", "angle-optimisation"])
@@ -37,15 +36,21 @@ def test_frequency_lies_in_the_published_scatter(runs, mover):
     assert 2.8 < 3.0 / (times[-1] - times[0]) < 3.3
 
 
+def test_meshes_that_do_not_drift_have_the_same_limit_cycle(runs):
+    """The mesh changes the discretisation error only; while the oscillation grows, small differences grow with it."""
+    barrier, solid = (np.array(runs.peaks(mover)) for mover in ("barrier", "pseudo-solid"))
+    assert barrier[-3:, 0] == pytest.approx(solid[-3:, 0], abs=0.005)
+    assert barrier[-3:, 1] == pytest.approx(solid[-3:, 1], rel=0.02)
+
+
 def test_the_mover_hardly_matters(runs):
-    """The mesh changes the discretisation error only; single peaks differ more, for the cycle is modulated."""
     amplitudes = []
     for mover, values in runs.values.items():
         late = values[runs.times[mover] > 2.5]
         amplitudes.append((np.max(late) - np.min(late)) / 2.0)
-    assert amplitudes[1:] == pytest.approx([amplitudes[0]] * 2, rel=0.05)
+    assert amplitudes[1:] == pytest.approx([amplitudes[0]] * 2, rel=0.1)
 
 
-def test_meshes_that_do_not_drift_agree_for_eight_cycles(runs):
-    barrier, solid = ([value for _, value in runs.peaks(mover)[2:8]] for mover in ("barrier", "pseudo-solid"))
+def test_meshes_that_do_not_drift_agree_from_the_start(runs):
+    barrier, solid = ([value for _, value in runs.peaks(mover)[:4]] for mover in ("barrier", "pseudo-solid"))
     assert barrier == pytest.approx(solid, rel=0.02)
