@@ -38,6 +38,16 @@ def test_fluid_conditions_without_values(name: str, kind: type) -> None:
     assert fluid(f'type = "{name}"') == kind(("wall",), "boundary[3]")
 
 
+@pytest.mark.parametrize("kind", ['"do-nothing"', '"pressure"\nvalue = 2', '"traction"\nx = 1'])
+def test_open_boundaries_may_be_stabilised_against_backflow(kind: str) -> None:
+    assert fluid(f"type = {kind}").backflow == 0.0
+    assert fluid(f"type = {kind}\nbackflow = 0.5").backflow == 0.5
+    with pytest.raises(SceneError, match=r"backflow: got -1"):
+        fluid(f"type = {kind}\nbackflow = -1")
+    with pytest.raises(SceneError, match=r"backflow: unknown key"):
+        fluid('type = "no-slip"\nbackflow = 1')
+
+
 @pytest.mark.parametrize(("name", "kind"), [("roller", Roller), ("symmetry", Roller), ("free", Free)])
 def test_solid_conditions_without_values(name: str, kind: type) -> None:
     assert solid(f'type = "{name}"') == kind(("wall",), "boundary[3]")

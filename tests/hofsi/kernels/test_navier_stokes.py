@@ -97,6 +97,11 @@ def test_viscous_term(peers):
     peers.same(peers.ours(blocks), peers.theirs(lambda u, v, w: 2.0 * 0.7 * ddot(sym_grad(u), sym_grad(v))))
 
 
+def test_grad_div_term(peers):
+    blocks = kernel.grad_div(peers.dNx, peers.dNy, peers.geometry.weights, 0.7)
+    peers.same(peers.ours(blocks), peers.theirs(lambda u, v, w: 0.7 * div(u) * div(v)))
+
+
 def test_mass(peers):
     block = kernel.transport(peers.table.N, peers.dNx, peers.dNy, peers.geometry.weights, 1.5, 2.0, None)
     zero = np.zeros_like(block)

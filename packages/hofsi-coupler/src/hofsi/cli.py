@@ -133,6 +133,8 @@ def _report(summary: Mapping[str, Any], directory: Path) -> list[str]:
     parts = sorted(seconds.items(), key=lambda item: -item[1])
     lines = [f"{summary['status']}: {steps} in {total:.2f} s", *_table(summary["quantities"])]
     lines.append("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in parts if value >= 0.005))
+    if backflows := counts.get("fluid", {}).get("backflows"):
+        lines.append(f"back-flow: fluid came in through stabilised openings, in {backflows} matrices")
     files = sorted(path.name + ("/" if path.is_dir() else "") for path in directory.iterdir())
     lines.append(f"{directory}: " + ", ".join(name for name in files if not name.startswith(".")))
     return lines

@@ -26,6 +26,8 @@ class Counts:
         Nonlinear iterations.
     continuation_steps : int
         Easier problems, and the one asked for, that were tried where Newton's method alone had failed.
+    backflows : int
+        Matrices in which fluid comes back through a stabilised outlet.
     iterations_below : int
         Nonlinear iterations at lower orders that found where to start.
     reasons : dict of str to int
@@ -39,6 +41,7 @@ class Counts:
     solves: int = 0
     iterations: int = 0
     continuation_steps: int = 0
+    backflows: int = 0
     iterations_below: int = 0
     krylov_iterations: int = 0
     reasons: dict[str, int] = field(default_factory=dict)

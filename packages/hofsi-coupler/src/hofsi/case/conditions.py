@@ -74,12 +74,15 @@ class Traction:
         Names of the mesh's edges.
     x, y : Expression of x, y, t
     place : str
+    backflow : float
+        Of a fluid: β in the traction β (ρ/2) min(u·n, 0) u that is added.
     """
 
     on: tuple[str, ...]
     x: Expression
     y: Expression
     place: str = ""
+    backflow: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -94,19 +97,23 @@ class Pressure:
         Names of the mesh's edges.
     value : Expression of x, y, t
     place : str
+    backflow : float
+        As of `Traction`.
     """
 
     on: tuple[str, ...]
     value: Expression
     place: str = ""
+    backflow: float = 0.0
 
 
 @dataclass(frozen=True)
 class DoNothing:
-    """μ ∂u/∂n - p n = 0."""
+    """μ ∂u/∂n - p n = 0, with ``backflow`` the additional traction of `Traction` instead of 0."""
 
     on: tuple[str, ...]
     place: str = ""
+    backflow: float = 0.0
 
 
 FluidCondition: TypeAlias = Velocity | NoSlip | Slip | Traction | Pressure | DoNothing

@@ -45,6 +45,8 @@ class Fluid:
         Per unit volume, gravity included; None is zero.
     initial_velocity : pair of Expression of x, y, or None
         None is zero.
+    grad_div : float
+        γ of the term ∫ γ (∇·u)(∇·v), of the unit of the viscosity; 0 for none.
     place : str
     """
 
@@ -56,6 +58,7 @@ class Fluid:
     convection: Convection | Literal["auto"] = "auto"
     body_force: VectorExpression | None = None
     initial_velocity: VectorExpression | None = None
+    grad_div: float = 0.0
     place: str = "fluid"
 
     def convection_of_steps(self, coupling: CouplingSettings | None) -> Convection:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from hoblock.expressions import Expression, compile_expression
 from hoblock.io.table import Table
@@ -64,11 +65,11 @@ def read_fluid_condition(table: Table, mesh: MeshScene, constants: Mapping[str, 
         case "slip" | "symmetry":
             condition = Slip(on, table.place)
         case "do-nothing":
-            condition = DoNothing(on, table.place)
+            condition = DoNothing(on, table.place, _backflow(table))
         case "traction":
-            condition = _traction(table, on, constants)
+            condition = replace(_traction(table, on, constants), backflow=_backflow(table))
         case _:
-            condition = _pressure(table, on, constants)
+            condition = replace(_pressure(table, on, constants), backflow=_backflow(table))
     table.finish()
     return condition
 
@@ -132,6 +133,10 @@ def _traction(table: Table, on: tuple[str, ...], constants: Mapping[str, float])
 
 def _pressure(table: Table, on: tuple[str, ...], constants: Mapping[str, float]) -> Pressure:
     return Pressure(on, table.expression("value", PLACE_AND_TIME, constants), table.place)
+
+
+def _backflow(table: Table) -> float:
+    return table.number("backflow", 0.0, minimum=0.0)
 
 
 def _zero(table: Table) -> Expression:

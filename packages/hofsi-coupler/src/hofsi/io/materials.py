@@ -45,6 +45,7 @@ def read_fluid(table: Table, mesh: MeshScene, constants: Mapping[str, float]) ->
         convection=choice(table, "convection", ("newton", "picard", "linearised", "extrapolated"), "auto"),
         body_force=_body_force(table, constants, density),
         initial_velocity=_initial(table, "initial_velocity", constants),
+        grad_div=table.number("grad_div", 0.0, minimum=0.0),
         place=table.place,
     )
     table.finish()

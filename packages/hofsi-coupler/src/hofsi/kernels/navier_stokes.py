@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["divergence", "load", "reaction", "transport", "velocity_gradient", "viscous"]
+__all__ = ["divergence", "grad_div", "load", "reaction", "transport", "velocity_gradient", "viscous"]
 
 
 def viscous(dNx: Array, dNy: Array, weights: Array, viscosity: float) -> tuple[Array, Array, Array, Array]:
@@ -27,6 +27,14 @@ def viscous(dNx: Array, dNy: Array, weights: Array, viscosity: float) -> tuple[A
     yx = xy.transpose(0, 2, 1)
     # Test component a, trial component b: δ_ab ∇N_i·∇N_j + ∂_b N_i ∂_a N_j.
     return 2.0 * xx + yy, yx, xy, xx + 2.0 * yy
+
+
+def grad_div(dNx: Array, dNy: Array, weights: Array, factor: float) -> tuple[Array, Array, Array, Array]:
+    """Blocks xx, xy, yx, yy of ∫ γ (∇·u)(∇·v), each (e, i, j)."""
+    w = (factor * weights)[:, :, None]
+    tx, ty = dNx.transpose(0, 2, 1), dNy.transpose(0, 2, 1)
+    xy = tx @ (w * dNy)
+    return tx @ (w * dNx), xy, xy.transpose(0, 2, 1), ty @ (w * dNy)
 
 
 def transport(

@@ -13,6 +13,7 @@ from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.linear.solver import Solver
+from hofsi.solvers.backflow import Backflow
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
 from hofsi.solvers.fluid_factors import FluidFactors
@@ -53,6 +54,7 @@ class FluidEquations:
         self.mesh, self.fluid, self.nonlinear, self.linear = mesh, fluid, nonlinear, linear
         self.space = TaylorHood.on(mesh)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
+        self.backflow = Backflow(mesh, self.space, fluid.boundaries, fluid.density)
         self.counts = Counts()
         self.factors = FluidFactors(self.counts, linear.lag)
         self._system: FluidSystem | None = None
@@ -84,6 +86,9 @@ class FluidEquations:
             k = space.dofs.shape[1]
             A = np.zeros((len(space.dofs), k, k))
             xx, xy, yx, yy = kernel.viscous(dNx, dNy, geometry.weights, self.fluid.viscosity)
+            if self.fluid.grad_div:
+                more = kernel.grad_div(dNx, dNy, geometry.weights, self.fluid.grad_div)
+                xx, xy, yx, yy = (a + b for a, b in zip((xx, xy, yx, yy), more, strict=True))
             if rate:
                 mass = kernel.transport(space.velocity.N, dNx, dNy, geometry.weights, rate, self.fluid.density, None)
                 xx, yy = xx + mass, yy + mass

@@ -88,7 +88,9 @@ class FluidOperator:
         else:
             space.add(A, 0, 0, convection)
             space.add(A, 1, 1, convection)
-        self._equations.counts.assemblies += 1
+        counts = self._equations.counts
+        counts.backflows += self._equations.backflow.add(A, self._points, velocity - self._mesh_velocity)
+        counts.assemblies += 1
         return A
 
     @property
@@ -107,9 +109,10 @@ class FluidOperator:
     def residual(self, unknowns: Array) -> Array:
         """Element residuals f - A(u) u, shape (e, k), without assembling A(u)."""
         velocity = self._velocity(unknowns)
-        return self.imbalance(self.without_convection(), unknowns) - self.convection(
-            velocity, velocity - self._mesh_velocity
-        )
+        relative = velocity - self._mesh_velocity
+        r = self.imbalance(self.without_convection(), unknowns) - self.convection(velocity, relative)
+        self._equations.backflow.subtract(r, self._points, relative, velocity)
+        return r
 
     def _velocity(self, unknowns: Array) -> Array:
         return unknowns[: 2 * self._equations.space.velocity_count].reshape(-1, 2)
