@@ -24,6 +24,10 @@ class Counts:
         Nonlinear iterations.
     continuation_steps : int
         Easier problems, and the one asked for, that were tried where Newton's method alone had failed.
+    linear_iterations : int
+        Of iterative linear solvers, summed over their solutions.
+    preconditioners : int
+        Preconditioners that were made; each serves as long as it pays.
     """
 
     geometries: int = 0
@@ -33,3 +37,5 @@ class Counts:
     solves: int = 0
     iterations: int = 0
     continuation_steps: int = 0
+    linear_iterations: int = 0
+    preconditioners: int = 0

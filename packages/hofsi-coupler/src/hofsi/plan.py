@@ -29,6 +29,7 @@ from hofsi.case import (
 )
 from hofsi.case_checks import check_case
 from hofsi.errors import CaseError
+from hofsi.linear.choice import choose_solver
 from hofsi.movers import placed_vertices
 
 Index = NDArray[np.int64]
@@ -120,7 +121,7 @@ def plan(case: Case) -> Plan:
         *_without_material(case),
         *_without_bodies(case),
         *_without_motion(case),
-        *_without_iteration(case),
+        *_without_iteration(case, meshes),
         *_without_output(case),
         *_unused_tables(case),
     ]
@@ -192,13 +193,33 @@ def _inner(mesh: QuadMesh, order: int) -> int:
     return len(mesh.cells) * (order - 1) ** 2
 
 
+def _kept_of_fluid(mesh: QuadMesh, pressures: int) -> int:
+    """Unknowns of the fluid after static condensation, given ones included."""
+    return 2 * len(mesh.points) + pressures - 2 * _inner(mesh, mesh.order) - _inner(mesh, mesh.order - 1)
+
+
+def _kept_of_solid(mesh: QuadMesh) -> int:
+    return 2 * len(mesh.points) - 2 * _inner(mesh, mesh.order)
+
+
+def _linear_solvers(case: Case, meshes: _Meshes) -> dict[str, str]:
+    """The linear solver of each field."""
+    kept = {}
+    if meshes.fluid is not None:
+        mesh = meshes.fluid[1]
+        kept["fluid"] = _kept_of_fluid(mesh, number_nodes(mesh.corners, mesh.order - 1)[1])
+    if meshes.solid is not None:
+        kept["solid"] = _kept_of_solid(meshes.solid[1])
+    return {field: choose_solver(case.linear.solver, count).solver for field, count in kept.items()}
+
+
 def _fluid(case: Case, meshes: _Meshes) -> Iterator[Item]:
     if case.fluid is None or meshes.fluid is None:
         return
     structure, mesh = meshes.fluid
-    p, velocities = mesh.order, 2 * len(mesh.points)
-    pressures = number_nodes(mesh.corners, p - 1)[1]
-    kept = velocities + pressures - 2 * _inner(mesh, p) - _inner(mesh, p - 1)
+    velocities = 2 * len(mesh.points)
+    pressures = number_nodes(mesh.corners, mesh.order - 1)[1]
+    kept = _kept_of_fluid(mesh, pressures)
     yield Item("fluid mesh", _mesh(structure, mesh))
     yield Item(
         "fluid",
@@ -214,9 +235,11 @@ def _fluid(case: Case, meshes: _Meshes) -> Iterator[Item]:
         yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps")
     solver = {
         "direct": f"sparse LU of {kept} unknowns after static condensation",
-        "amg": f"FGMRES with algebraic multigrid to a relative residual of {case.linear.tolerance:g}",
+        "amg": f"FGMRES with multigrid on nested meshes to a relative residual of {case.linear.tolerance:g}",
     }
-    yield Item("fluid's linear solver", solver[case.linear.solver])
+    choice = choose_solver(case.linear.solver, kept)
+    why = f"; {choice.reason}" if case.linear.solver == "auto" else ""
+    yield Item("fluid's linear solver", f"{solver[choice.solver]}{why}")
 
 
 def _solid(case: Case, meshes: _Meshes) -> Iterator[Item]:
@@ -224,12 +247,13 @@ def _solid(case: Case, meshes: _Meshes) -> Iterator[Item]:
         return
     structure, mesh = meshes.solid
     unknowns = 2 * len(mesh.points)
+    kept = _kept_of_solid(mesh)
     solver = {"direct": "sparse LU", "amg": f"algebraic multigrid to a relative residual of {case.linear.tolerance:g}"}
     yield Item("solid mesh", _mesh(structure, mesh))
     yield Item(
         "solid",
         f"{unknowns} unknowns of displacement, given ones included; "
-        f"{unknowns - 2 * _inner(mesh, mesh.order)} after static condensation, {solver[case.linear.solver]}",
+        f"{kept} after static condensation, {solver[choose_solver(case.linear.solver, kept).solver]}",
     )
     for solid in case.solids:
         yield Item(f"solid {solid.name!r}", _material(solid, case.fluid))
@@ -338,27 +362,24 @@ def _once(case: Case) -> str:
     return "twice, for the first step and the others" if several else "once"
 
 
-def _without_iteration(case: Case) -> Iterator[Item]:
-    fluid = case.fluid
+def _without_iteration(case: Case, meshes: _Meshes) -> Iterator[Item]:
+    fluid, solvers = case.fluid, _linear_solvers(case, meshes)
     if fluid is not None:
+        factor = "factorisation" if solvers["fluid"] == "direct" else "preconditioner"
         if fluid.model == "stokes":
-            kept = "" if _moves(case) else f", and its {_factor(case)} is kept"
+            kept = "" if _moves(case) else f", and its {factor} is kept"
             yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
         elif not _iterates(case, fluid):
-            meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
+            however = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
             again = not case.solids and not fluid.merely_convects(None)
             unless = ", unless the flow changes at once, as after an impulsive start" if again else ""
-            yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}{unless}")
-    if case.linear.solver == "direct":
-        yield Item("algebraic multigrid", 'linear.solver = "direct"')
+            yield Item("fluid's Newton iteration", f"linear steps: one {factor} a step{however}{unless}")
+    if "amg" not in solvers.values():
+        yield Item("multigrid", "LU serves" if case.linear.solver == "auto" else 'linear.solver = "direct"')
     if case.solids and all(solid.model == "linear" for solid in case.solids):
         yield Item("solid's Newton iteration", f"linear: factorised {_once(case)}")
     if isinstance(case.time, Steady):
         yield Item("time loop", "steady: no inertia, no time steps")
-
-
-def _factor(case: Case) -> str:
-    return "factorisation" if case.linear.solver == "direct" else "preconditioner"
 
 
 def _one_mesh_a_step(case: Case) -> bool:

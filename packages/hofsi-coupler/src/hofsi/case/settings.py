@@ -93,9 +93,17 @@ class NonlinearSettings:
 
 @dataclass(frozen=True)
 class LinearSettings:
-    """The linear solver; its relative tolerance is for "amg" only."""
+    """How linear systems are solved.
 
-    solver: Literal["direct", "amg"] = "direct"
+    Attributes
+    ----------
+    solver : {"auto", "direct", "amg"}
+        "auto" is one of the others, by size and memory.
+    tolerance : float
+        For "amg" only: of the residual, relative to the right-hand side. Newton's method asks for less in its steps.
+    """
+
+    solver: Literal["auto", "direct", "amg"] = "auto"
     tolerance: float = 1e-10
 
 

@@ -42,6 +42,13 @@ class CondensedSystem:
     places : ndarray, shape (e, 2), optional
         Where the elements are: condensed matrices are then factorised front by front (see
         `hofsi.linear.multifrontal`), without places by SuperLU.
+
+    Attributes
+    ----------
+    unknowns : ndarray
+        Free unknowns on the elements' boundaries, in global numbers.
+    skeleton : ndarray, shape (e, boundary)
+        Numbers of these of each element, among ``unknowns``; -1 where constrained.
     """
 
     def __init__(
@@ -65,13 +72,13 @@ class CondensedSystem:
         self.unknowns = np.flatnonzero(free)
         number = np.full(size, -1)
         number[self.unknowns] = np.arange(len(self.unknowns))
-        self._skeleton = number[dofs[:, :boundary]]
+        self.skeleton = number[dofs[:, :boundary]]
         self._rotated, self._rotation = self._rotations(constraints)
 
     @cached_property
-    def _pattern(self) -> MatrixPattern:
+    def pattern(self) -> MatrixPattern:
         """Pattern of condensed matrices, made when one is asked for."""
-        return MatrixPattern(self._skeleton, len(self.unknowns))
+        return MatrixPattern(self.skeleton, len(self.unknowns))
 
     def _rotations(self, constraints: NodeConstraints) -> tuple[Index, Array]:
         """Elements with nodes in a frame of their own, and their local rotation matrices."""
@@ -98,30 +105,51 @@ class CondensedSystem:
         other._solver, other._places = solver, None
         return other
 
-    def factorise(self, A: Array) -> CondensedFactor:
-        """Condense and factorise element matrices A of shape (e, k, k)."""
-        S, inverse, X = self._condensed(A)
+    def prepare(self) -> None:
+        """Make what can be known before the numbers, which the first factorisation would otherwise make."""
+        _ = self.pattern if self._tree is None else self._tree
+
+    def factorise(self, A: Array, *, tolerance: float | None = None) -> CondensedFactor:
+        """Condense and factorise element matrices.
+
+        Parameters
+        ----------
+        A : ndarray, shape (e, k, k)
+        tolerance : float, optional
+            For iterative solvers: a residual, relative to the right-hand side, that is small enough.
+        """
+        S, inverse, X = self.condensed(A)
         return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, self._factorised(S))
 
     def _factorised(self, S: Array) -> Solver:
         """What solves with condensed element matrices (e, boundary, boundary)."""
         if self._tree is None:
-            return self._solver(self._pattern.matrix(S))
-        return multifrontal_solver(self._tree, S, lambda: self._pattern.matrix(S))
+            return self._solver(self.pattern.matrix(S))
+        return multifrontal_solver(self._tree, S, lambda: self.pattern.matrix(S))
 
     @cached_property
     def _tree(self) -> EliminationTree | None:
         """Fronts of the elements, made for the first factorisation."""
         if self._places is None:
             return None
-        return EliminationTree(self._skeleton, len(self.unknowns), self._places)
+        return EliminationTree(self.skeleton, len(self.unknowns), self._places)
 
     def matrix(self, A: Array) -> sp.csc_matrix:
         """Return the condensed matrix of element matrices (e, k, k), in the nodes' own frames."""
-        return self._pattern.matrix(self._condensed(A)[0])
+        return self.pattern.matrix(self.condensed(A)[0])
 
-    def _condensed(self, A: Array) -> tuple[Array, Array | None, Array | None]:
-        """Condensed element matrices, inverses of the inner blocks, and those times the blocks beside them."""
+    def condensed(self, A: Array) -> tuple[Array, Array | None, Array | None]:
+        """Condense element matrices (e, k, k).
+
+        Returns
+        -------
+        S : ndarray, shape (e, boundary, boundary)
+            In the nodes' own frames.
+        inverse : ndarray, shape (e, inner, inner), or None
+            Of the matrices of the inner unknowns; None if there are none.
+        X : ndarray, shape (e, inner, boundary), or None
+            That times the blocks beside it.
+        """
         b = self.boundary
         S = A[:, :b, :b]
         inverse: Array | None = None
@@ -180,7 +208,7 @@ class CondensedFactor:
         if self._inverse is not None:
             z = (self._inverse @ r[:, b:, None])[:, :, 0]
             on_boundary -= (self._coupling @ z[:, :, None])[:, :, 0]
-        skeleton = system._skeleton
+        skeleton = system.skeleton
         solution = self.factor.solve(assemble_vector(skeleton, system.rotate(on_boundary), len(system.unknowns)))
         padded = np.append(solution, 0.0)  # number -1 reads the zero of a constrained unknown
         x_b = system.rotate_back(padded[skeleton])

@@ -22,6 +22,7 @@ __all__ = ["FluidState", "FluidStep"]
 
 _ON_THE_WAY = 1e-6  # tolerance of the problems that continuation solves on the way
 _ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else is left of a flow without stress
+_CORRECTION = 1e-4  # residual that an iterative solution of Newton's equations may leave: the next step takes it away
 _FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
 
 
@@ -254,7 +255,7 @@ class FluidStep:
             J = A.copy()
             if not picard:
                 self._reaction(J, unknowns[: 2 * equations.space.velocity_count].reshape(-1, 2))
-            factor = equations.system(self.points).factorise(J)
+            factor = equations.system(self.points).factorise(J, tolerance=_CORRECTION)
             delta = factor.solve(self._imbalance(A, unknowns))
             equations.counts.factorisations += 1
             equations.counts.solves += 1
