@@ -145,7 +145,8 @@ def test_preconditioner_is_kept_while_it_pays(flows):
 
 def test_preconditioner_of_quite_another_matrix_is_given_up(flows):
     sizes = (1e-3, 1.0, 1e-3)
-    direct, multigrid = both(channel(flows, 2, 24, 12, viscosity=0.02, model="stokes"))
+    strict = replace(AMG, tolerance=1e-12)  # a small step after a large one magnifies what that has left
+    direct, multigrid = both(channel(flows, 2, 24, 12, viscosity=0.02, model="stokes"), strict)
     states = [flows.march(solver, solver.initial_state(), sizes, linear=True) for solver in (direct, multigrid)]
     same(*states, 1e-7)
     assert multigrid.counts.preconditioners >= 2
