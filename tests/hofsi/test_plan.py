@@ -208,6 +208,20 @@ def test_linear_solver_of_solids(read_changed: Read, solid_alone: str, solver: s
     assert ("multigrid" in _names(planned.skipped)) == (solver == "direct")
 
 
+def test_linear_solver_is_chosen_with_a_reason(
+    read_changed: Read, fluid_alone: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyamg")
+    small = plan(read_changed(text=fluid_alone))
+    assert "faster than multigrid" in _built(small, "fluid's linear solver")
+    assert _skipped(small, "multigrid") == "LU serves"
+    monkeypatch.setattr("hofsi.linear.choice.machine_memory", lambda: 2**14)
+    large = plan(read_changed(text=fluid_alone))
+    assert _built(large, "fluid's linear solver").startswith("FGMRES with multigrid on nested meshes")
+    assert "would need about" in _built(large, "fluid's linear solver")
+    assert "multigrid" not in _names(large.skipped)
+
+
 def test_output_that_is_not_wanted(read_changed: Read) -> None:
     planned = plan(read_changed(("[output]", "[output]\nfields = false\nplots = false")))
     assert "vtk is not needed" in _skipped(planned, "fields")

@@ -56,13 +56,12 @@ def choose_solver(
         return Choice(asked, f'linear.solver = "{asked}"')
     needed = direct_memory(unknowns)
     limit = machine_memory() if memory is None else memory
-    size = f"{unknowns} unknowns after static condensation"
     if limit and needed > _SHARE * limit:
-        why = f"LU would need about {needed / 2**30:.1f} GiB of {limit / 2**30:.0f} GiB for {size}"
+        why = f"LU of {unknowns} condensed unknowns would need about {needed / 2**30:.1f} of {limit / 2**30:.0f} GiB"
     elif unknowns > _OVERTAKEN:
-        why = f"{size}, and beyond {_OVERTAKEN} multigrid is faster than LU"
+        why = f"with {unknowns} condensed unknowns, more than {_OVERTAKEN}, it is faster than LU"
     else:
-        return Choice("direct", f"{size}: LU is faster, and needs about {needed / 2**30:.2g} GiB")
+        return Choice("direct", f"at this size it is faster than multigrid, and needs about {needed / 2**30:.2g} GiB")
     if not (find_spec("pyamg") is not None if pyamg is None else pyamg):
         return Choice("direct", f"{why}, but multigrid needs pyamg: pip install 'hofsi-coupler[amg]'")
     return Choice("amg", why)

@@ -30,9 +30,14 @@ STEP_COLUMNS = (
     "mesh_amplification",
     "factorisations",
     "assemblies",
+    "preconditioners",
+    "linear_iterations",
     "seconds",
 )
 """Columns of ``steps.csv``; those that a problem does not have stay empty."""
+
+_COUNTED = ("factorisations", "assemblies", "preconditioners", "linear_iterations")
+"""Columns with sums of the fields' counts so far."""
 
 
 class _Lines:
@@ -104,7 +109,7 @@ class StepTable:
     ----------
     path : path-like
     counts : mapping of str to Counts
-        Of each field, live: factorisations and assemblies are written as they stand after the step.
+        Of each field, live: what is written of them is as it stands after the step.
     clock : callable
         Seconds; those since the table was opened are written.
 
@@ -151,8 +156,7 @@ class StepTable:
                 record.min_det_J,
                 blocks,
                 *motion,
-                sum(count.factorisations for count in self._counts.values()),
-                sum(count.assemblies for count in self._counts.values()),
+                *(sum(getattr(count, name) for count in self._counts.values()) for name in _COUNTED),
                 round(self._clock() - self._opened, 4),
             )
         )
