@@ -92,3 +92,13 @@ def test_closed_rings_keep_three_elements(sectors, coarse):
     assert len(nesting.corners) == coarse
     sides = {frozenset(pair) for quad in nesting.corners for pair in zip(quad, np.roll(quad, -1), strict=True)}
     assert len(sides) == 3 * coarse
+
+
+def test_only_the_shorter_lengths_of_thin_elements_are_doubled():
+    lengths = np.tile([1.0, 0.1], (16, 1))
+    nesting = nested(grid(4, 4), NONE, lengths)
+    assert len(nesting.corners) == 8
+    np.testing.assert_array_equal(nesting.part[:, 0], 0)
+    turned = nested(grid(4, 4, np.ones(16, dtype=int)), NONE, lengths[:, ::-1])
+    assert {frozenset(quad) for quad in turned.corners} == {frozenset(quad) for quad in nesting.corners}
+    assert len(nested(grid(4, 4), NONE, np.tile([1.0, 0.5], (16, 1))).corners) == 4

@@ -133,6 +133,21 @@ def test_iterations_hardly_grow_with_the_mesh(flows, order, problem):
     assert taken[-1] <= 1.3 * taken[0] + 1.0
 
 
+def test_thin_elements_at_a_wall(flows):
+    mesh = flows.rectangle(2, 24, 24)
+    x, y = mesh.points.T
+    mesh = mesh.with_points(np.stack([x, np.expm1(5.0 * y) / np.expm1(5.0)], axis=-1))  # 26 times as long as thick
+    conditions = [
+        flows.velocity("left", "y", 0),
+        case.NoSlip(("bottom",)),
+        case.Slip(("top",)),
+        case.DoNothing(("right",)),
+    ]
+    solvers = both(flows.solver(mesh, conditions, model="stokes"))
+    same(*(flows.steady(solver) for solver in solvers), 1e-7)
+    assert solvers[1].counts.linear_iterations <= 30
+
+
 def test_preconditioner_is_kept_while_it_pays(flows):
     direct, multigrid = both(channel(flows, 2, 24, 12, viscosity=0.05, convection="extrapolated"))
     sizes = (0.02,) * 6

@@ -12,7 +12,7 @@ from hoblock.numbering import side_nodes
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.fem.element import boundary_first
-from hofsi.fem.nesting import nested
+from hofsi.fem.nesting import Nesting, nested
 from hofsi.fem.spaces import TaylorHood
 from hofsi.fem.transfer import Transfer, coarse_constraints
 from hofsi.linear.patches import PatchSmoother
@@ -50,7 +50,7 @@ class GridLevel:
 
 
 def grid_levels(
-    space: TaylorHood, constraints: NodeConstraints, pinned: tuple[int, ...], places: Array
+    space: TaylorHood, constraints: NodeConstraints, pinned: tuple[int, ...], places: Array, lengths: Array
 ) -> tuple[GridLevel, ...]:
     """Make coarser and coarser meshes until the matrix is small enough to be factorised.
 
@@ -63,6 +63,8 @@ def grid_levels(
         Pressure unknowns at vertices that are held fixed, numbered as in the space.
     places : ndarray, shape (e, 2)
         Where the elements are.
+    lengths : ndarray, shape (e, 2)
+        Of the elements along ξ and η.
 
     Returns
     -------
@@ -76,7 +78,9 @@ def grid_levels(
         vertices = np.unique(space.corners)
         held = vertices[np.array(pinned, dtype=np.int64) - 2 * space.velocity_count]
         small = size <= _DIRECT and levels
-        nesting = None if small else nested(space.corners, np.concatenate([held, _changes(space, constraints)]))
+        nesting = (
+            None if small else nested(space.corners, np.concatenate([held, _changes(space, constraints)]), lengths)
+        )
         transfer = None
         if nesting is not None:
             transfer = Transfer(space, TaylorHood.on_quads(nesting.corners, space.order), nesting)
@@ -92,6 +96,17 @@ def grid_levels(
         count = np.bincount(nesting.parent)
         sums = [np.bincount(nesting.parent, weights=places[:, axis]) for axis in range(2)]
         places = np.stack(sums, axis=-1) / count[:, None]
+        lengths = _summed(lengths, nesting)
+
+
+def _summed(lengths: Array, nesting: Nesting) -> Array:
+    """Lengths (c, 2) of coarse elements from those of their parts."""
+    own = np.where((nesting.turn % 2 == 1)[:, None], lengths[:, ::-1], lengths)  # as the parent counts directions
+    result = np.zeros((len(nesting.corners), 2))
+    for axis in range(2):  # the mean across, the sum along
+        beside = nesting.part[:, 1 - axis] == 0
+        np.add.at(result[:, axis], nesting.parent, np.where(beside, 1.0, 0.5) * own[:, axis])
+    return result
 
 
 def _patches(system: CondensedSystem) -> tuple[sp.csr_matrix, Array]:

@@ -8,12 +8,16 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 __all__ = ["Nesting", "nested"]
 
-_WHOLE, _FIRST, _SECOND = 0, 1, 2
+_FIRST, _SECOND = 1, 2
+
+_THIN = 8.0
+"""Ratio of the lengths of an element above which only its shorter one is doubled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +42,7 @@ class Nesting:
     corners: Index
 
 
-def nested(corners: Index, kept: Index) -> Nesting | None:
+def nested(corners: Index, kept: Index, lengths: Array | None = None) -> Nesting | None:
     """Merge elements across lines of element sides, no two of them side by side.
 
     A line goes straight on through every vertex of four elements. Lines along the boundary, lines that end at vertices
@@ -52,6 +56,9 @@ def nested(corners: Index, kept: Index) -> Nesting | None:
         Vertices of each element, counter-clockwise.
     kept : ndarray
         Vertices that the coarse elements must have as corners.
+    lengths : ndarray, shape (e, 2), optional
+        Of the elements along ξ and η. Lines that lie much further apart than the elements between them are wide remain
+        too: what couples strongly, across thin elements, is to be coarsened first.
 
     Returns
     -------
@@ -61,8 +68,9 @@ def nested(corners: Index, kept: Index) -> Nesting | None:
     sides, first, second = _sides(corners)
     lines, count = _lines(sides, first, second, corners)
     across = _across(lines[sides], count)
+    far = _far_apart(lines[sides], count, lengths)
     while True:
-        gone = _alternate(across, _fixed(lines, count, sides, corners, kept))[lines]
+        gone = _alternate(across, far | _fixed(lines, count, sides, corners, kept))[lines]
         if not gone.any():
             return None
         nesting = _merged(corners, sides, first, second, gone)
@@ -123,6 +131,16 @@ def _fixed(lines: Index, count: int, sides: Index, corners: Index, kept: Index) 
     fixed[lines[sides[at]]] = True
     fixed[lines[single]] = True
     return fixed
+
+
+def _far_apart(lines: Index, count: int, lengths: Array | None) -> Flags:
+    """Lines beside which an element is much longer than wide; ``lines`` are those of the elements' sides."""
+    ratio = np.zeros(count)
+    if lengths is not None:
+        for along, sides in enumerate(((1, 3), (0, 2))):  # sides that are apart along ξ, along η
+            for side in sides:
+                np.maximum.at(ratio, lines[:, side], lengths[:, along] / lengths[:, 1 - along])
+    return ratio > _THIN
 
 
 def _across(lines: Index, count: int) -> sp.csr_matrix:

@@ -44,6 +44,8 @@ class SaddlePointSystem(CondensedSystem):
         Pressure unknowns at vertices that are held fixed, numbered as in the space.
     places : ndarray, shape (e, 2)
         Where the elements are.
+    lengths : ndarray, shape (e, 2)
+        Of the elements along ξ and η, to choose the coarser meshes.
     tolerance : float
         Of the residual, relative to the right-hand side, both after condensation.
     counts : Counts, optional
@@ -56,13 +58,14 @@ class SaddlePointSystem(CondensedSystem):
         constraints: NodeConstraints,
         pinned: tuple[int, ...],
         places: Array,
+        lengths: Array,
         tolerance: float,
         counts: Counts | None = None,
     ) -> None:
         super().__init__(space.dofs, space.boundary, space.size, constraints, pinned, places)
         self.tolerance = tolerance
         self.counts = Counts() if counts is None else counts
-        self._parts = space, constraints, pinned, places
+        self._parts = space, constraints, pinned, places, lengths
         self._cycle: Solver | None = None
         self._taken: list[int] = []  # iterations of the solutions with it
 

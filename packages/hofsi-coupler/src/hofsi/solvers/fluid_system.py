@@ -56,7 +56,7 @@ def fluid_system(
     constraints: NodeConstraints,
     pinned: tuple[int, ...],
     linear: LinearSettings,
-    places: Array,
+    points: Array,
     counts: Counts,
 ) -> FluidSystem:
     """Choose the linear systems of a fluid.
@@ -69,12 +69,21 @@ def fluid_system(
     pinned : tuple of int
         Pressure unknowns that are held fixed.
     linear : LinearSettings
-    places : ndarray, shape (e, 2)
-        Where the elements are.
+    points : ndarray, shape (n, 2)
+        Where the nodes are.
     counts : Counts
         Where iterations and preconditioners are counted.
     """
+    places = points[space.velocity_cells].mean(axis=1)
     kept = space.size - (space.dofs.shape[1] - space.boundary) * len(space.dofs)
     if choose_solver(linear.solver, kept).solver == "direct":
         return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places)
-    return SaddlePointSystem(space, constraints, pinned, places, linear.tolerance, counts)
+    return SaddlePointSystem(
+        space, constraints, pinned, places, _lengths(points[space.corners]), linear.tolerance, counts
+    )
+
+
+def _lengths(X: Array) -> Array:
+    """Lengths along ξ and η, shape (e, 2), of quads with corners X (e, 4, 2)."""
+    middles = 0.5 * (X + np.roll(X, -1, axis=1))  # of sides 0, η = -1, to 3, ξ = -1
+    return np.asarray(np.linalg.norm(middles[:, [1, 2]] - middles[:, [3, 0]], axis=2))
