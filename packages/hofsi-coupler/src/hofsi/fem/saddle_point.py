@@ -24,9 +24,6 @@ __all__ = ["SaddlePointSystem"]
 _SETUP = 10
 """Iterations that cost about as much as a new preconditioner."""
 
-_PATIENCE = 40
-"""Iterations that a preconditioner of another matrix may take."""
-
 
 class SaddlePointSystem(CondensedSystem):
     """Pattern of condensed systems that are solved by FGMRES with one multigrid cycle as preconditioner.
@@ -102,11 +99,16 @@ class SaddlePointSystem(CondensedSystem):
         """The preconditioner that is kept, or a new one; and which it is."""
         if self._cycle is not None and not renew and self._pays():
             return self._cycle, False
-        self._cycle = None  # its memory is free before the new one needs some
+        self._cycle = None
         self._cycle = GridCycle(self.levels, A, S)
         self._taken = []
         self.counts.preconditioners += 1
         return self._cycle, True
+
+    @property
+    def patience(self) -> int:
+        """Iterations that a preconditioner of another matrix may take: more cost more than a new one."""
+        return (self._taken[0] if self._taken else 0) + 2 * _SETUP
 
     def _pays(self) -> bool:
         """Whether the preconditioner that is kept is worth more than a new one."""
@@ -145,10 +147,11 @@ class _Iteration:
         cycle, new = self._system.preconditioner(self._A, self._S)
         if not new:
             try:
-                return self._solved(b, cycle, restart=_PATIENCE, cycles=1)
+                return self._solved(b, cycle, restart=self._system.patience, cycles=1)
             except LinearSolverError as error:
                 if error.reason != "max_iterations":
                     raise
+                del cycle  # its memory is free before the new one needs some
                 cycle, _ = self._system.preconditioner(self._A, self._S, renew=True)
         return self._solved(b, cycle)
 

@@ -10,14 +10,17 @@ from typing import Literal
 
 __all__ = ["Choice", "choose_solver", "direct_memory", "machine_memory"]
 
-_OVERTAKEN = 600_000
-"""Unknowns on element boundaries from which multigrid took less time than LU (docs/theory/fluid.md)."""
+_OVERTAKEN = 1_600_000
+"""Condensed unknowns from which a solution by multigrid takes less time than one by LU.
+
+Carried on from measurements up to 230 000, see docs/linear_solvers.md.
+"""
 
 _ENTRIES = 27.0
 """Entries of the LU factors for each unknown and each doubling of their number, at most as measured."""
 
-_COPIES = 2.0
-"""Memory of a direct solution, in that of its factors."""
+_COPIES = 3.0
+"""Memory of a direct solution, element matrices and all, in that of its factors."""
 
 _SHARE = 0.5
 """Part of the machine's memory that the direct solution may take."""
