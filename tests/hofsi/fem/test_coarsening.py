@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hofsi.fem.coarsening import scalar_coarsening, skeleton_coarsening
+from hofsi.fem.coarsening import skeleton_coarsening
 from hofsi.fem.constraints import DirectedNodes, NodeConstraints
 from hofsi.fem.element import boundary_first
 
@@ -19,35 +19,6 @@ def free_unknowns(mesh, constraints):
     nodes = np.unique(boundary_nodes(mesh))
     both = (2 * nodes[:, None] + np.arange(2)).ravel()
     return both[~constraints.fixed.ravel()[both]]
-
-
-@pytest.mark.parametrize("order", [1, 2, 5])
-def test_values_at_vertices_are_interpolated_bilinearly(distorted, order):
-    mesh = distorted(order)
-    cells = mesh.cells[:, boundary_first(order)[0]]
-    everything = np.arange(len(mesh.points))
-    coarsening = scalar_coarsening(cells, order, everything)
-    straight = distorted(1)
-    assert coarsening.prolongation.shape == (len(mesh.points), len(straight.points))
-    vertices = np.unique(mesh.corners)
-    values = np.random.default_rng(71).standard_normal(len(vertices))
-    found = coarsening.prolongation @ values
-    np.testing.assert_allclose(found[vertices], values, atol=1e-14)
-    # In the middle of an element of even order: the mean of its corners.
-    if order == 2:
-        corners = np.searchsorted(vertices, mesh.corners)
-        np.testing.assert_allclose(found[mesh.cells[:, 4]], values[corners].mean(axis=1), atol=1e-14)
-    np.testing.assert_allclose(coarsening.prolongation @ coarsening.near_kernel[:, 0], 1.0, atol=1e-14)
-
-
-def test_patches_of_a_scalar_field_are_its_elements_without_known_values(distorted):
-    mesh = distorted(3)
-    cells = mesh.cells[:, boundary_first(3)[0]]
-    unknowns = np.delete(np.arange(len(mesh.points)), [0, 17])
-    patches = scalar_coarsening(cells, 3, unknowns).patches
-    for row, cell in enumerate(cells):
-        members = unknowns[patches.indices[patches.indptr[row] : patches.indptr[row + 1]]]
-        np.testing.assert_array_equal(np.sort(members), np.setdiff1d(cell, [0, 17]))
 
 
 @pytest.mark.parametrize("order", [2, 4])

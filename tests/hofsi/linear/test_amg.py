@@ -8,7 +8,8 @@ import scipy.sparse as sp
 
 from hoblock.errors import MissingExtraError
 from hofsi.errors import LinearSolverError
-from hofsi.linear.amg import Coarsening, PatchMultigrid, pyamg_module
+from hofsi.linear.amg import Coarsening, PatchMultigrid
+from hofsi.linear.extra import pyamg_module
 from hofsi.linear.krylov import flexible_gmres
 
 

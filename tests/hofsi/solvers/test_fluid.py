@@ -520,7 +520,6 @@ def test_a_linearised_step_far_from_what_was_expected_is_linearised_about_what_n
     assert expected.counts.factorisations == made  # once more after Newton's, then no more
 
 
-
 @pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
 def test_nothing_is_kept_of_a_mesh_that_has_moved_on(flows, model):
     # Slip walls, so that frames, constraints, pattern, matrices and factors all belong to the old position.

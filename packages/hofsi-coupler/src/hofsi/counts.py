@@ -20,8 +20,6 @@ class Counts:
     assemblies : int
         Element matrices that are factorised.
     factorisations, solves : int
-    krylov_iterations : int
-        Of linear solutions that are iterated.
     iterations : int
         Nonlinear iterations.
     continuation_steps : int
@@ -30,6 +28,10 @@ class Counts:
         Matrices in which fluid comes back through a stabilised outlet.
     iterations_below : int
         Nonlinear iterations at lower orders that found where to start.
+    linear_iterations : int
+        Of linear solutions that are iterated, summed.
+    preconditioners : int
+        Preconditioners of iterative solvers that were made; each serves as long as it pays.
     reasons : dict of str to int
         Why matrices were factorised, and how often.
     """
@@ -43,7 +45,8 @@ class Counts:
     continuation_steps: int = 0
     backflows: int = 0
     iterations_below: int = 0
-    krylov_iterations: int = 0
+    linear_iterations: int = 0
+    preconditioners: int = 0
     reasons: dict[str, int] = field(default_factory=dict)
 
     def factorised(self, reason: str) -> None:

@@ -97,14 +97,15 @@ class LinearSettings:
 
     Attributes
     ----------
-    solver : {"direct", "amg"}
+    solver : {"auto", "direct", "amg"}
+        "auto" is one of the others, by size and memory.
     tolerance : float
-        Of the relative residual, for "amg" only.
+        For "amg" only: of the residual, relative to the right-hand side. Newton's method asks for less in its steps.
     lag : bool
         Whether the fluid's nonlinear iterations solve with earlier factors, by GMRES, as long as that is cheap.
     """
 
-    solver: Literal["direct", "amg"] = "direct"
+    solver: Literal["auto", "direct", "amg"] = "auto"
     tolerance: float = 1e-10
     lag: bool = True
 

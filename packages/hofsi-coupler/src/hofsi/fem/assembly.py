@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -27,6 +29,8 @@ def assemble_vector(dofs: Index, values: Array, size: int) -> Array:
 class MatrixPattern:
     """Sparsity pattern of element matrices on the same degrees of freedom, and where each entry goes.
 
+    The pattern is symmetric, so that it serves compressed rows and columns alike.
+
     Parameters
     ----------
     dofs : ndarray, shape (e, k)
@@ -37,19 +41,40 @@ class MatrixPattern:
 
     def __init__(self, dofs: Index, size: int) -> None:
         self.size = size
-        rows = np.broadcast_to(dofs[:, :, None], (*dofs.shape, dofs.shape[1]))
-        columns = np.broadcast_to(dofs[:, None, :], rows.shape)
-        keep = (rows >= 0) & (columns >= 0)
-        keys = np.where(keep, columns.astype(np.int64) * size + rows, -1).ravel()
-        unique, slot = np.unique(keys, return_inverse=True)
-        self._dropped = int(len(unique) > 0 and unique[0] < 0)
-        unique = unique[self._dropped :]
-        self._slot = slot.astype(np.int32 if len(unique) < 2**31 - 2 else np.int64)
-        self.indices = (unique % size).astype(np.int32)
-        counts = np.bincount(unique // size, minlength=size)
-        self.indptr = np.concatenate(([0], np.cumsum(counts))).astype(np.int32)
+        k = dofs.shape[1]
+        index: type[np.signedinteger[Any]] = np.int32 if dofs.size * k < 2**31 - 1 else np.int64
+        numbers = np.where(dofs < 0, size, dofs).astype(index)  # one more column takes what is dropped
+        lines = numbers.ravel()
+        order = np.argsort(lines, kind="stable").astype(index)
+        starts = np.concatenate(([0], np.cumsum(np.bincount(lines, minlength=size + 1) * k))).astype(index)
+        # One line after the other, with repetitions; the values tell where in (e, line, other) an entry was.
+        table = sp.csr_matrix(
+            ((order[:, None] * k + np.arange(k, dtype=index)).ravel(), numbers[order // k].ravel(), starts),
+            shape=(size + 1, size + 1),
+        )
+        table.sort_indices()
+        stop = int(starts[size])
+        found, place = table.indices[:stop], table.data
+        kept = np.ones(stop, dtype=bool)
+        kept[1:] = found[1:] != found[:-1]
+        kept[starts[:size][np.diff(starts[: size + 1]) > 0]] = True
+        kept &= found < size
+        count = int(np.count_nonzero(kept))
+        self._slot = np.full(len(place), count, dtype=index)
+        inside = found < size
+        self._slot[place[:stop][inside]] = (np.cumsum(kept, dtype=index) - 1)[inside]
+        self.indices = found[kept].astype(np.int32)
+        entries = np.concatenate(([0], np.cumsum(kept, dtype=np.int64)))
+        self.indptr = entries[starts[: size + 1]].astype(np.int32)
 
     def matrix(self, values: Array) -> sp.csc_matrix:
         """Sum element matrices (e, k, k) into a matrix in compressed columns."""
-        data = np.bincount(self._slot, weights=values.ravel(), minlength=len(self.indices) + self._dropped)
-        return sp.csc_matrix((data[self._dropped :], self.indices, self.indptr), shape=(self.size, self.size))
+        return sp.csc_matrix((self._sums(values.transpose(0, 2, 1)), self.indices, self.indptr), shape=(self.size,) * 2)
+
+    def rows(self, values: Array) -> sp.csr_matrix:
+        """Sum element matrices (e, k, k) into a matrix in compressed rows."""
+        return sp.csr_matrix((self._sums(values), self.indices, self.indptr), shape=(self.size,) * 2)
+
+    def _sums(self, values: Array) -> Array:
+        sums = np.bincount(self._slot, weights=values.ravel(), minlength=len(self.indices) + 1)[:-1]
+        return np.asarray(sums, dtype=np.float64)

@@ -14,26 +14,7 @@ from hofsi.linear.amg import Coarsening
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["scalar_coarsening", "skeleton_coarsening"]
-
-
-def scalar_coarsening(cells: Index, order: int, unknowns: Index) -> Coarsening:
-    """Coarsening of a scalar field; a patch is an element.
-
-    Parameters
-    ----------
-    cells : ndarray, shape (e, (order + 1)²)
-        Nodes of each element, those on its boundary first.
-    order : int
-    unknowns : ndarray, shape (n,)
-        Nodes whose values are unknown, ascending.
-    """
-    count = int(cells.max()) + 1
-    coarse = np.intersect1d(unknowns, _corners(cells, order))
-    rows = np.repeat(np.arange(len(cells)), cells.shape[1])
-    patches = sp.csr_matrix((np.ones(cells.size), (rows, cells.ravel())), shape=(len(cells), count))
-    P = _interpolation(cells, order, count)
-    return Coarsening(P[unknowns][:, coarse], patches[:, unknowns], np.ones((len(coarse), 1)))
+__all__ = ["skeleton_coarsening"]
 
 
 def skeleton_coarsening(

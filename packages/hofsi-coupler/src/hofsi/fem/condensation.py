@@ -44,6 +44,13 @@ class CondensedSystem:
     places : ndarray, shape (e, 2), optional
         Where the elements are: condensed matrices are then factorised front by front (see
         `hofsi.linear.multifrontal`), without places by SuperLU.
+
+    Attributes
+    ----------
+    unknowns : ndarray
+        Free unknowns on the elements' boundaries, in global numbers.
+    skeleton : ndarray, shape (e, boundary)
+        Numbers of these of each element, among ``unknowns``; -1 where constrained.
     """
 
     def __init__(
@@ -67,13 +74,13 @@ class CondensedSystem:
         self.unknowns = np.flatnonzero(free)
         number = np.full(size, -1)
         number[self.unknowns] = np.arange(len(self.unknowns))
-        self._skeleton = number[dofs[:, :boundary]]
+        self.skeleton = number[dofs[:, :boundary]]
         self._rotated, self._rotation = self._rotations(constraints)
 
     @cached_property
-    def _pattern(self) -> MatrixPattern:
+    def pattern(self) -> MatrixPattern:
         """Pattern of condensed matrices, made when one is asked for."""
-        return MatrixPattern(self._skeleton, len(self.unknowns))
+        return MatrixPattern(self.skeleton, len(self.unknowns))
 
     def _rotations(self, constraints: NodeConstraints) -> tuple[Index, Array]:
         """Elements with nodes in a frame of their own, and their local rotation matrices."""
@@ -100,8 +107,19 @@ class CondensedSystem:
         other._solver, other._places = solver, None
         return other
 
-    def factorise(self, A: Array) -> CondensedFactor:
-        """Condense and factorise element matrices A of shape (e, k, k)."""
+    def prepare(self) -> None:
+        """Make what can be known before the numbers, which the first factorisation would otherwise make."""
+        _ = self.pattern if self._tree is None else self._tree
+
+    def factorise(self, A: Array, *, tolerance: float | None = None) -> CondensedFactor:
+        """Condense and factorise element matrices.
+
+        Parameters
+        ----------
+        A : ndarray, shape (e, k, k)
+        tolerance : float, optional
+            For iterative solvers: a residual, relative to the right-hand side, that is small enough.
+        """
         return self._solved(A, self._factorised)
 
     def lagged(self, A: Array, factor: CheckedSolver, goal: float, limit: int) -> CondensedFactor:
@@ -125,36 +143,46 @@ class CondensedSystem:
     def _exact(self, S: Array) -> CheckedSolver:
         """Factors of condensed element matrices."""
         if self._tree is None:
-            return DirectFactor(self._pattern.matrix(S))
-        return multifrontal_solver(self._tree, S, lambda: self._pattern.matrix(S))
+            return DirectFactor(self.pattern.matrix(S))
+        return multifrontal_solver(self._tree, S, lambda: self.pattern.matrix(S))
 
     def _solved(self, A: Array, solver: Callable[[Array], Solver]) -> CondensedFactor:
         """Condense, and let a solver of condensed element matrices do the rest."""
-        S, inner, X = self._condensed(A)
+        S, inner, X = self.condensed(A)
         return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inner, X, solver(S))
 
     def _product(self, S: Array, x: Array) -> Array:
         """Condensed element matrices times a vector of the free unknowns."""
-        local = np.append(x, 0.0)[self._skeleton]  # number -1 reads the zero of a constrained unknown
-        return assemble_vector(self._skeleton, (S @ local[:, :, None])[:, :, 0], len(x))
+        local = np.append(x, 0.0)[self.skeleton]  # number -1 reads the zero of a constrained unknown
+        return assemble_vector(self.skeleton, (S @ local[:, :, None])[:, :, 0], len(x))
 
     def _factorised(self, S: Array) -> Solver:
         """What solves with condensed element matrices (e, boundary, boundary)."""
-        return self._exact(S) if self._solver is DirectFactor else self._solver(self._pattern.matrix(S))
+        return self._exact(S) if self._solver is DirectFactor else self._solver(self.pattern.matrix(S))
 
     @cached_property
     def _tree(self) -> EliminationTree | None:
         """Fronts of the elements, made for the first factorisation."""
         if self._places is None:
             return None
-        return EliminationTree(self._skeleton, len(self.unknowns), self._places)
+        return EliminationTree(self.skeleton, len(self.unknowns), self._places)
 
     def matrix(self, A: Array) -> sp.csc_matrix:
         """Return the condensed matrix of element matrices (e, k, k), in the nodes' own frames."""
-        return self._pattern.matrix(self._condensed(A)[0])
+        return self.pattern.matrix(self.condensed(A)[0])
 
-    def _condensed(self, A: Array) -> tuple[Array, BlockSolver | None, Array | None]:
-        """Condensed element matrices, what solves with the inner blocks, and its solutions for those beside them."""
+    def condensed(self, A: Array) -> tuple[Array, BlockSolver | None, Array | None]:
+        """Condense element matrices (e, k, k).
+
+        Returns
+        -------
+        S : ndarray, shape (e, boundary, boundary)
+            In the nodes' own frames.
+        inner : BlockSolver or None
+            Solves with the matrices of the inner unknowns; None if there are none.
+        X : ndarray, shape (e, inner, boundary), or None
+            Its solutions for the blocks beside it.
+        """
         b = self.boundary
         S = A[:, :b, :b]
         inner: BlockSolver | None = None
@@ -210,7 +238,7 @@ class CondensedFactor:
         if self._inner is not None:
             z = self._inner.solve(r[:, b:, None])[:, :, 0]
             on_boundary -= (self._coupling @ z[:, :, None])[:, :, 0]
-        skeleton = system._skeleton
+        skeleton = system.skeleton
         solution = self.factor.solve(assemble_vector(skeleton, system.rotate(on_boundary), len(system.unknowns)))
         padded = np.append(solution, 0.0)  # number -1 reads the zero of a constrained unknown
         x_b = system.rotate_back(padded[skeleton])

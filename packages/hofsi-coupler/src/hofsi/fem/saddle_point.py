@@ -1,34 +1,36 @@
-"""Linear systems of velocity and pressure that are solved iteratively, without a matrix of the whole."""
+"""Linear systems of velocity and pressure that are solved iteratively, without factors of the whole."""
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from hofsi.counts import Counts
+from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import assemble_vector
-from hofsi.fem.coarsening import scalar_coarsening, skeleton_coarsening
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
+from hofsi.fem.multigrid import GridCycle, GridLevel, grid_levels
 from hofsi.fem.spaces import TaylorHood
-from hofsi.linear.amg import PatchMultigrid
 from hofsi.linear.krylov import flexible_gmres
-from hofsi.linear.schur import BlockTriangular, LeastSquaresCommutator, ScaledLaplacian
+from hofsi.linear.solver import Solver
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
-__all__ = ["SaddlePointFactor", "SaddlePointSystem"]
+__all__ = ["SaddlePointSystem"]
+
+_SETUP = 10
+"""Iterations that cost about as much as a new preconditioner."""
 
 
-class SaddlePointSystem:
-    """Pattern of systems [[F, Bᵀ], [B, 0]] on the same elements and constraints, for FGMRES.
+class SaddlePointSystem(CondensedSystem):
+    """Pattern of condensed systems that are solved by FGMRES with one multigrid cycle as preconditioner.
 
-    The preconditioner is block-triangular. In its velocity block the unknowns inside elements are eliminated and those
-    on the elements' boundaries go through one multigrid cycle: smoothed aggregation of F itself fails at high order.
-    Its Schur complement is the mass-scaled least-squares commutator. Used like a `CondensedSystem`.
+    Meshes and patterns are made once, for the first matrix. The preconditioner of one matrix serves the following
+    ones, as long as the iterations of a solution beyond those of the first are fewer than the average of what it has
+    cost so far, its making included.
 
     Parameters
     ----------
@@ -36,71 +38,93 @@ class SaddlePointSystem:
     constraints : NodeConstraints
         Of the velocity.
     pinned : tuple of int
-        Pressure unknowns that are held fixed, numbered as in the space.
-    mass : ndarray, shape (velocity nodes,)
-        Diagonal of the velocity's mass matrix; a scaling only, so one of another position of the mesh will do.
+        Pressure unknowns at vertices that are held fixed, numbered as in the space.
+    places : ndarray, shape (e, 2)
+        Where the elements are.
+    lengths : ndarray, shape (e, 2)
+        Of the elements along ξ and η, to choose the coarser meshes.
     tolerance : float
-        Of the residual, relative to the right-hand side.
-
-    Attributes
-    ----------
-    dofs, boundary, unknowns
-        As in `CondensedSystem`.
-    frames : csr_matrix, shape (all unknowns, free unknowns)
-        From free unknowns, velocities first and in the nodes' own frames, to all in x and y.
-    velocities : int
-        How many free unknowns are velocities.
-    velocity_dofs : ndarray, shape (e, 2n)
-        Columns of ``dofs`` that are velocities, in the same order.
+        Of the residual, relative to the right-hand side, both after condensation.
+    counts : Counts, optional
+        Where iterations and preconditioners are counted.
     """
 
     def __init__(
-        self, space: TaylorHood, constraints: NodeConstraints, pinned: tuple[int, ...], mass: Array, tolerance: float
+        self,
+        space: TaylorHood,
+        constraints: NodeConstraints,
+        pinned: tuple[int, ...],
+        places: Array,
+        lengths: Array,
+        tolerance: float,
+        counts: Counts | None = None,
     ) -> None:
-        self.space, self.tolerance = space, tolerance
-        self.dofs, self.boundary = space.dofs, space.boundary
-        n = 2 * space.velocity_count
-        free = np.ones(space.size, dtype=bool)
-        free[:n] = ~constraints.fixed.ravel()
-        free[list(pinned)] = False
-        self.unknowns = np.intersect1d(np.flatnonzero(free), self.dofs[:, : self.boundary])
-        self.frames = _frames(constraints, free)
-        self.velocities = int(np.count_nonzero(free[:n]))
-        self.scaling = np.repeat(mass, 2)[free[:n]]
-        local = np.arange(space.dofs.shape[1])
-        self._pressure_rows = np.concatenate([local[part] for part in space.rows(2)])
-        self._velocity_rows = np.concatenate([local[space.rows(a)[part]] for part in (0, 1) for a in (0, 1)])
-        self.velocity_dofs = self.dofs[:, self._velocity_rows]
-        on, order = space.velocity_boundary, space.velocity.order
-        skeleton = CondensedSystem(self.velocity_dofs, 2 * on, n, constraints)
-        coarsening = skeleton_coarsening(space.velocity_cells[:, :on], order, constraints, skeleton.unknowns)
-        self._skeleton = skeleton.solved_by(partial(PatchMultigrid, coarsening=coarsening, symmetric=False))
-        coarsening = scalar_coarsening(space.pressure_cells, order - 1, np.flatnonzero(free[n:]))
-        self._pressure_multigrid = partial(PatchMultigrid, coarsening=coarsening, symmetric=True)
-        self._laplacian: tuple[Array, ScaledLaplacian] | None = None
+        super().__init__(space.dofs, space.boundary, space.size, constraints, pinned, places)
+        self.tolerance = tolerance
+        self.counts = Counts() if counts is None else counts
+        self._parts = space, constraints, pinned, places, lengths
+        self._cycle: Solver | None = None
+        self._taken: list[int] = []  # iterations of the solutions with it
 
-    def factorise(self, A: Array) -> SaddlePointFactor:
-        """Prepare the solution of systems with element matrices A of shape (e, k, k), which are kept, not copied."""
-        rows = self._velocity_rows
-        velocity = self._skeleton.factorise(np.ascontiguousarray(A[:, rows[:, None], rows]))
-        return SaddlePointFactor(self, A, velocity, self._pressure_laplacian(A))
+    @cached_property
+    def levels(self) -> tuple[GridLevel, ...]:
+        """The mesh and coarser ones, made for the first factorisation."""
+        return grid_levels(*self._parts)
 
-    def _pressure_laplacian(self, A: Array) -> ScaledLaplacian:
-        """Scaled Laplacian, kept while the divergence does not change."""
-        rows = self._pressure_rows
-        divergence = A[:, rows[:, None], self._velocity_rows]
-        if self._laplacian is None or not np.array_equal(self._laplacian[0], divergence):
-            i = np.broadcast_to(self.dofs[:, rows, None], divergence.shape).ravel()
-            j = np.broadcast_to(self.velocity_dofs[:, None, :], divergence.shape).ravel()
-            n = self.space.size
-            B = self.frames.T @ sp.csr_matrix((divergence.ravel(), (i, j)), shape=(n, n)) @ self.frames
-            B = B.tocsr()[self.velocities :, : self.velocities]
-            self._laplacian = (divergence, ScaledLaplacian(B, self.scaling, self._pressure_multigrid))
-        return self._laplacian[1]
+    def prepare(self) -> None:
+        """Make the coarser meshes and all patterns."""
+        for level in self.levels[:-1]:
+            _ = level.system.pattern
+        self.levels[-1].system.prepare()
+
+    def factorise(self, A: Array, *, tolerance: float | None = None) -> CondensedFactor:
+        """Condense element matrices and prepare their solution.
+
+        Parameters
+        ----------
+        A : ndarray, shape (e, k, k)
+            Kept, not copied.
+        tolerance : float, optional
+            If the residual need not be smaller; by default that of the system.
+        """
+        S, inverse, X = self.condensed(A)
+        factor: Solver
+        if self.levels[0].transfer is None:
+            factor = self._factorised(S)
+        else:
+            factor = _Iteration(self, A, S, max(self.tolerance, tolerance or 0.0))
+        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, factor)
+
+    def preconditioner(self, A: Array, S: Array, *, renew: bool = False) -> tuple[Solver, bool]:
+        """The preconditioner that is kept, or a new one; and which it is."""
+        if self._cycle is not None and not renew and self._pays():
+            return self._cycle, False
+        self._cycle = None
+        self._cycle = GridCycle(self.levels, A, S)
+        self._taken = []
+        self.counts.preconditioners += 1
+        return self._cycle, True
+
+    @property
+    def patience(self) -> int:
+        """Iterations that a preconditioner of another matrix may take: more cost more than a new one."""
+        return (self._taken[0] if self._taken else 0) + 2 * _SETUP
+
+    def _pays(self) -> bool:
+        """Whether the preconditioner that is kept is worth more than a new one."""
+        if not self._taken:
+            return True
+        beyond = np.maximum(0, np.array(self._taken) - self._taken[0])
+        return bool(beyond[-1] <= (_SETUP + beyond.sum()) / len(beyond))
+
+    def count(self, iterations: int) -> None:
+        """Remember how many iterations a solution took."""
+        self.counts.linear_iterations += iterations
+        self._taken.append(iterations)
 
 
-class SaddlePointFactor:
-    """A system that is ready to be solved; made by `SaddlePointSystem.factorise`.
+class _Iteration:
+    """Solves with one condensed matrix.
 
     Attributes
     ----------
@@ -108,78 +132,37 @@ class SaddlePointFactor:
         Of the last solution.
     """
 
-    def __init__(
-        self, system: SaddlePointSystem, A: Array, velocity: CondensedFactor, laplacian: ScaledLaplacian
-    ) -> None:
+    def __init__(self, system: SaddlePointSystem, A: Array, S: Array, tolerance: float) -> None:
+        self._system, self._A, self._S, self._tolerance = system, A, S, tolerance
         self.iterations = 0
-        self._system, self._matrix = system, _Matrix(system, A)
-        schur = LeastSquaresCommutator(self._matrix.velocity_product, laplacian)
-        self._preconditioner = BlockTriangular(_Velocity(system, velocity), schur, laplacian.BT)
 
-    def solve(self, r: Array, /) -> Array:
-        """Solve for all unknowns.
-
-        Parameters
-        ----------
-        r : ndarray, shape (e, k)
-            Right-hand side, element by element.
-
-        Returns
-        -------
-        ndarray, shape (size,)
-            In x and y components; zero where constrained.
+    def solve(self, b: Array, /) -> Array:
+        """Solve S x = b.
 
         Raises
         ------
         LinearSolverError
             If the tolerance is not reached.
         """
+        cycle, new = self._system.preconditioner(self._A, self._S)
+        if not new:
+            try:
+                return self._solved(b, cycle, restart=self._system.patience, cycles=1)
+            except LinearSolverError as error:
+                if error.reason != "max_iterations":
+                    raise
+                del cycle  # its memory is free before the new one needs some
+                cycle, _ = self._system.preconditioner(self._A, self._S, renew=True)
+        return self._solved(b, cycle)
+
+    def _solved(self, b: Array, cycle: Solver, **limits: int) -> Array:
         system = self._system
-        b = system.frames.T @ assemble_vector(system.dofs, r, system.space.size)
-        x, self.iterations = flexible_gmres(self._matrix.product, self._preconditioner.solve, b, system.tolerance)
-        return np.asarray(system.frames @ x)
+        x, self.iterations = flexible_gmres(self._product, cycle.solve, b, self._tolerance, **limits)
+        system.count(self.iterations)
+        return x
 
-
-class _Matrix:
-    """The matrix of the free unknowns, velocities in their own frames; never assembled."""
-
-    def __init__(self, system: SaddlePointSystem, A: Array) -> None:
-        self._A, self._dofs, self._frames = A, system.dofs, system.frames
-        self._back = system.frames.T.tocsr()
-
-    def product(self, x: Array) -> Array:
-        """A x."""
-        local = (self._frames @ x)[self._dofs]
-        products = (self._A @ local[:, :, None])[:, :, 0]
-        return np.asarray(self._back @ assemble_vector(self._dofs, products, self._frames.shape[0]))
-
-    def velocity_product(self, v: Array) -> Array:
-        """F v."""
-        x = np.zeros(self._frames.shape[1])
-        x[: len(v)] = v
-        return self.product(x)[: len(v)]
-
-
-class _Velocity:
-    """Approximate inverse of F on the free velocity unknowns, in the nodes' own frames."""
-
-    def __init__(self, system: SaddlePointSystem, factor: CondensedFactor) -> None:
-        n = 2 * system.space.velocity_count
-        self._frames = system.frames[:n, : system.velocities]
-        self._back = self._frames.T.tocsr()
-        self._dofs, self._factor = system.velocity_dofs, factor
-        self._share = 1.0 / np.maximum(np.bincount(self._dofs.ravel(), minlength=n), 1)
-
-    def solve(self, r: Array, /) -> Array:
-        """Approximate v in F v = r."""
-        shared = (self._frames @ r) * self._share
-        return np.asarray(self._back @ self._factor.solve(shared[self._dofs]))
-
-
-def _frames(constraints: NodeConstraints, free: NDArray[np.bool_]) -> sp.csr_matrix:
-    """Matrix from the free unknowns, velocities in their own frames, to all in x and y."""
-    count = len(constraints.fixed)
-    turned = sp.bsr_matrix((constraints.frames, np.arange(count), np.arange(count + 1)))
-    T = sp.block_diag([turned, sp.identity(len(free) - 2 * count)], format="csr")[:, np.flatnonzero(free)]
-    T.eliminate_zeros()
-    return T
+    def _product(self, x: Array) -> Array:
+        """S x, element by element."""
+        skeleton = self._system.skeleton
+        local = np.append(x, 0.0)[skeleton]  # number -1 reads the zero
+        return assemble_vector(skeleton, (self._S @ local[:, :, None])[:, :, 0], len(x))

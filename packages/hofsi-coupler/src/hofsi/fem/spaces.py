@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import QuadMesh
-from hoblock.numbering import number_nodes
+from hoblock.numbering import corner_nodes, number_nodes
 from hoblock.reference import gauss_lobatto, tensor_basis, tensor_gradient, tensor_quadrature
 from hofsi.fem.element import ElementTable, boundary_first, side_table
 
@@ -60,14 +60,21 @@ class TaylorHood:
     @staticmethod
     def on(mesh: QuadMesh) -> TaylorHood:
         """Make the spaces on a mesh of order p ≥ 2, with p + 2 quadrature points in each direction."""
-        p = mesh.order
+        return TaylorHood._numbered(mesh.order, mesh.corners, mesh.cells, len(mesh.points))
+
+    @staticmethod
+    def on_quads(corners: Index, order: int) -> TaylorHood:
+        """Make the spaces on quads of which only the corners are known, shape (e, 4), counter-clockwise."""
+        return TaylorHood._numbered(order, corners, *number_nodes(corners, order))
+
+    @staticmethod
+    def _numbered(p: int, corners: Index, velocity_cells: Index, n_count: int) -> TaylorHood:
         if p < 2:
             raise ValueError(f"Taylor–Hood elements need mesh.order >= 2; got {p}.")
         v_order, nb = boundary_first(p)
         p_order, mb = boundary_first(p - 1)
-        cells, count = number_nodes(mesh.corners, p - 1)
-        vc, pc = mesh.cells[:, v_order], cells[:, p_order]
-        n_count = len(mesh.points)
+        cells, count = number_nodes(corners, p - 1)
+        vc, pc = velocity_cells[:, v_order], cells[:, p_order]
         x, y, q = 2 * vc, 2 * vc + 1, 2 * n_count + pc
         dofs = np.concatenate([x[:, :nb], y[:, :nb], q[:, :mb], x[:, nb:], y[:, nb:], q[:, mb:]], axis=1)
         points, weights = tensor_quadrature(p + 2)
@@ -98,6 +105,17 @@ class TaylorHood:
         )
 
     @property
+    def order(self) -> int:
+        """Order p of the velocity."""
+        return self.velocity.order
+
+    @property
+    def corners(self) -> Index:
+        """Velocity nodes at the corners of each element, counter-clockwise, shape (e, 4)."""
+        local = np.argsort(boundary_first(self.order)[0])
+        return np.asarray(self.velocity_cells[:, local[corner_nodes(self.order)]])
+
+    @property
     def size(self) -> int:
         """Number of unknowns, constrained ones included."""
         return 2 * self.velocity_count + self.pressure_count
@@ -114,21 +132,25 @@ class TaylorHood:
         start, inner = (0, nb, 2 * nb)[field], self.boundary + (0, ni, 2 * ni)[field]
         return slice(start, start + (nb, nb, mb)[field]), slice(inner, inner + (ni, ni, mi)[field])
 
+    def on_boundary(self, field: int) -> int:
+        """Local nodes of a field (0 and 1 velocity, 2 pressure) on the element's boundary."""
+        return self.pressure_boundary if field == 2 else self.velocity_boundary
+
     def put(self, A: Array, row: int, column: int, block: Array) -> None:
         """Write the block of a pair of fields into element matrices in local order."""
         for rows, first in zip(
-            self.rows(row), (slice(None, self._on_boundary(row)), slice(self._on_boundary(row), None)), strict=True
+            self.rows(row), (slice(None, self.on_boundary(row)), slice(self.on_boundary(row), None)), strict=True
         ):
             for columns, second in zip(
                 self.rows(column),
-                (slice(None, self._on_boundary(column)), slice(self._on_boundary(column), None)),
+                (slice(None, self.on_boundary(column)), slice(self.on_boundary(column), None)),
                 strict=True,
             ):
                 A[:, rows, columns] = block[:, first, second]
 
     def add(self, A: Array, row: int, column: int, block: Array, elements: Index | slice = slice(None)) -> None:
         """Add a block to the element matrices of some elements."""
-        b, c = self._on_boundary(row), self._on_boundary(column)
+        b, c = self.on_boundary(row), self.on_boundary(column)
         rows, columns = self.rows(row), self.rows(column)
         for r, first in zip(rows, (slice(None, b), slice(b, None)), strict=True):
             for s, second in zip(columns, (slice(None, c), slice(c, None)), strict=True):
@@ -145,6 +167,3 @@ class TaylorHood:
             on, inside = self.rows(a)
             result[:, on], result[:, inside] = velocity[:, :b, a], velocity[:, b:, a]
         return result
-
-    def _on_boundary(self, field: int) -> int:
-        return self.pressure_boundary if field == 2 else self.velocity_boundary

@@ -100,7 +100,7 @@ def read_linear(table: Table) -> LinearSettings:
     """Read ``[linear]``."""
     default = LinearSettings()
     settings = LinearSettings(
-        solver=choice(table, "solver", ("direct", "amg"), default.solver),
+        solver=choice(table, "solver", ("auto", "direct", "amg"), default.solver),
         tolerance=_tolerance(table, default.tolerance),
         lag=table.boolean("lag", default.lag),
     )

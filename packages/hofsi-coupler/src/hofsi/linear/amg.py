@@ -3,33 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from hoblock.extras import import_extra
-from hofsi.errors import LinearSolverError
+from hofsi.linear.extra import pyamg_module
+from hofsi.linear.patches import PatchSmoother
 
-__all__ = ["Coarsening", "PatchMultigrid", "pyamg_module"]
+__all__ = ["Coarsening", "PatchMultigrid"]
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _DIRECT = 500  # unknowns at most on the level that is solved by LU
-
-
-def pyamg_module(name: str = "pyamg") -> ModuleType:
-    """Import pyamg or one of its modules.
-
-    Raises
-    ------
-    MissingExtraError
-        If pyamg is not installed; names the extra that brings it.
-    """
-    return import_extra(name, "amg", "hofsi-coupler")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,49 +67,22 @@ class PatchMultigrid:
     """
 
     def __init__(self, matrix: sp.spmatrix, coarsening: Coarsening, *, symmetric: bool) -> None:
-        self._sweep: Any = pyamg_module("pyamg.relaxation.relaxation").schwarz
-        self._A = sp.csr_matrix(matrix)
-        self._A.sort_indices()
+        pyamg_module()
+        A = sp.csr_matrix(matrix)
+        self._smoother = PatchSmoother(A, coarsening.patches)
         self._P, self._R = coarsening.prolongation, coarsening.prolongation.T.tocsr()
-        self._patches = _patches_and_inverses(self._A, coarsening.patches)
-        coarse = (self._R @ self._A @ self._P).tocsr()
+        coarse = (self._R @ A @ self._P).tocsr()
         self._coarse: Any = _aggregation(coarse, coarsening.near_kernel, symmetric) if coarse.shape[0] else None
 
     def solve(self, b: Array, /) -> Array:
         """Return the result of one cycle from zero for A x = b."""
         x = np.zeros(len(b))
-        self._sweep(self._A, x, b, 1, *self._patches, sweep="forward")
+        self._smoother.sweep(x, b)
         if self._coarse is not None:
-            r = self._R @ (b - self._A @ x)
+            r = self._R @ self._smoother.residual(x, b)
             x += self._P @ self._coarse.solve(r, maxiter=1, tol=1e-15)
-        self._sweep(self._A, x, b, 1, *self._patches, sweep="backward")
+        self._smoother.sweep(x, b, backward=True)
         return x
-
-
-def _patches_and_inverses(A: sp.csr_matrix, patches: sp.csr_matrix) -> tuple[Index, Index, Array, Index]:
-    """Unknowns of the patches, where each begins, the inverses of their matrices, where each of those begins."""
-    patches = patches.sorted_indices()
-    sizes = np.diff(patches.indptr)
-    sizes = sizes[sizes > 0]
-    unknowns = patches.indices.astype(np.int32)
-    start = np.concatenate(([0], np.cumsum(sizes)))
-    block_start = np.concatenate(([0], np.cumsum(sizes.astype(np.int64) ** 2)))
-    inverses = np.empty(block_start[-1])
-    for size in np.unique(sizes):
-        chosen = np.flatnonzero(sizes == size)
-        members = unknowns[start[chosen][:, None] + np.arange(size)]
-        rows = np.broadcast_to(members[:, :, None], (len(chosen), size, size))
-        blocks = np.asarray(A[rows.ravel(), rows.transpose(0, 2, 1).ravel()]).reshape(rows.shape)
-        try:
-            inverse = np.linalg.inv(blocks)
-        except np.linalg.LinAlgError as error:
-            raise LinearSolverError(
-                f"the matrix of a patch of {size} unknowns is singular; multigrid needs a regular "
-                'one. Use linear.solver = "direct".',
-                "singular",
-            ) from error
-        inverses[block_start[chosen][:, None] + np.arange(size * size)] = inverse.reshape(len(chosen), -1)
-    return unknowns, start.astype(np.int32), inverses, block_start.astype(np.int32)
 
 
 def _aggregation(A: sp.csr_matrix, near_kernel: Array, symmetric: bool) -> Any:

@@ -12,10 +12,10 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from hofsi.errors import LinearSolverError
-from hofsi.linear.amg import pyamg_module
+from hofsi.linear.extra import pyamg_module
 from hofsi.linear.solver import Solver
 
-__all__ = ["KrylovSolver", "conjugate_gradients", "flexible_gmres"]
+__all__ = ["KrylovSolver", "flexible_gmres"]
 
 Array = NDArray[np.float64]
 Operator: TypeAlias = Callable[[Array], Array]
@@ -128,36 +128,6 @@ class KrylovSolver:
             self._A.__matmul__, self._preconditioner.solve, b, self._tolerance, size=self._size
         )
         return x
-
-
-def conjugate_gradients(multiply: Operator, precondition: Operator, b: Array, tolerance: float, limit: int) -> Array:
-    """Solve A x = b roughly, A and M symmetric and positive definite; as part of a preconditioner, without a check.
-
-    Parameters
-    ----------
-    multiply, precondition : callable
-        v ↦ A v and v ↦ M v with M ≈ A⁻¹.
-    b : ndarray, shape (n,)
-    tolerance : float
-        Of the residual, relative to ‖b‖.
-    limit : int
-        Iterations at most.
-    """
-    x, r = np.zeros(len(b)), b.copy()
-    goal = tolerance * float(np.linalg.norm(b))
-    d, before = np.zeros(len(b)), 1.0
-    for _ in range(limit):
-        if np.linalg.norm(r) <= goal:
-            break
-        z = precondition(r)
-        now = float(r @ z)
-        d = z + (now / before) * d
-        image = multiply(d)
-        step = now / float(d @ image)
-        x += step * d
-        r -= step * image
-        before = now
-    return x
 
 
 class _Counted:

@@ -30,11 +30,16 @@ STEP_COLUMNS = (
     "mesh_amplification",
     "factorisations",
     "factorised_because",
-    "krylov_iterations",
     "assemblies",
+    "preconditioners",
+    "linear_iterations",
     "seconds",
 )
 """Columns of ``steps.csv``; those that a problem does not have stay empty."""
+
+
+_COUNTED = ("assemblies", "preconditioners", "linear_iterations")
+"""Columns with sums of the fields' counts so far."""
 
 
 class _Lines:
@@ -106,8 +111,8 @@ class StepTable:
     ----------
     path : path-like
     counts : mapping of str to Counts
-        Of each field, live: factorisations, iterations of GMRES and assemblies are written as they stand after the
-        step, the reasons for factorisations as far as they are the step's own.
+        Of each field, live: what is written of them is as it stands after the step; the reasons for factorisations are
+        the step's own.
     clock : callable
         Seconds; those since the table was opened are written.
 
@@ -157,8 +162,7 @@ class StepTable:
                 *motion,
                 sum(count.factorisations for count in self._counts.values()),
                 self._because(),
-                sum(count.krylov_iterations for count in self._counts.values()),
-                sum(count.assemblies for count in self._counts.values()),
+                *(sum(getattr(count, name) for count in self._counts.values()) for name in _COUNTED),
                 round(self._clock() - self._opened, 4),
             )
         )

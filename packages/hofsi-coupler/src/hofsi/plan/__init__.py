@@ -36,4 +36,4 @@ def plan(case: Case) -> Plan:
     meshes = meshes_of(case)
     bodies = (*fluid_items(case, meshes), *solid_items(case, meshes), *coupling_items(case, meshes))
     built = (*bodies, *time_items(case), *output_items(case))
-    return Plan(built, tuple(skipped_items(case)))
+    return Plan(built, tuple(skipped_items(case, meshes)))

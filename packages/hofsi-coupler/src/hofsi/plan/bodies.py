@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from hoblock.blocks import BlockStructure
 from hoblock.mesh import QuadMesh
-from hoblock.numbering import number_nodes
 from hoblock.quality import scaled_jacobian
 from hofsi.case import Case, Fluid, Solid
 from hofsi.plan.facts import convection_of_steps, counted, iterates
 from hofsi.plan.meshes import Meshes
 from hofsi.plan.report import Item
+from hofsi.plan.sizes import condensed_fluid, condensed_solid, linear_solvers, pressures
 
 __all__ = ["fluid_items", "solid_items"]
 
@@ -27,24 +27,16 @@ def _mesh(structure: BlockStructure, mesh: QuadMesh) -> str:
     )
 
 
-def inner_nodes(mesh: QuadMesh, order: int) -> int:
-    """Nodes of an order inside elements, which static condensation eliminates."""
-    return len(mesh.cells) * (order - 1) ** 2
-
-
 def fluid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     """The fluid, its mesh and how its equations are solved."""
     if case.fluid is None or meshes.fluid is None:
         return
     structure, mesh = meshes.fluid
-    p, velocities = mesh.order, 2 * len(mesh.points)
-    pressures = number_nodes(mesh.corners, p - 1)[1]
-    kept = velocities + pressures - 2 * inner_nodes(mesh, p) - inner_nodes(mesh, p - 1)
     yield Item("fluid mesh", _mesh(structure, mesh))
     yield Item(
         "fluid",
         f"{_MODELS[case.fluid.model]}, ρ = {case.fluid.density:g}, μ = {case.fluid.viscosity:g}; "
-        f"{velocities} unknowns of velocity and {pressures} of pressure, given ones included",
+        f"{2 * len(mesh.points)} unknowns of velocity and {pressures(mesh)} of pressure, given ones included",
     )
     if iterates(case, case.fluid):
         method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
@@ -54,10 +46,12 @@ def fluid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
         how = "convection with" if convects else "Newton's linearisation about"
         yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps")
     solver = {
-        "direct": f"sparse LU of {kept} unknowns after static condensation",
-        "amg": f"FGMRES with algebraic multigrid to a relative residual of {case.linear.tolerance:g}",
+        "direct": f"sparse LU of {condensed_fluid(mesh)} unknowns after static condensation",
+        "amg": f"FGMRES with multigrid on nested meshes to a relative residual of {case.linear.tolerance:g}",
     }
-    yield Item("fluid's linear solver", solver[case.linear.solver])
+    choice = linear_solvers(case, meshes)["fluid"]
+    why = f"; {choice.reason}" if case.linear.solver == "auto" else ""
+    yield Item("fluid's linear solver", f"{solver[choice.solver]}{why}")
 
 
 def solid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
@@ -65,13 +59,12 @@ def solid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     if meshes.solid is None:
         return
     structure, mesh = meshes.solid
-    unknowns = 2 * len(mesh.points)
     solver = {"direct": "sparse LU", "amg": f"algebraic multigrid to a relative residual of {case.linear.tolerance:g}"}
     yield Item("solid mesh", _mesh(structure, mesh))
     yield Item(
         "solid",
-        f"{unknowns} unknowns of displacement, given ones included; "
-        f"{unknowns - 2 * inner_nodes(mesh, mesh.order)} after static condensation, {solver[case.linear.solver]}",
+        f"{2 * len(mesh.points)} unknowns of displacement, given ones included; "
+        f"{condensed_solid(mesh)} after static condensation, {solver[linear_solvers(case, meshes)['solid'].solver]}",
     )
     for solid in case.solids:
         yield Item(f"solid {solid.name!r}", _material(solid, case.fluid))

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from hofsi.case import Case, Steady, Unsteady
+from hofsi.linear.choice import Choice
 from hofsi.plan.facts import convection_of_steps, has_series, is_coupled, iterates, moves
+from hofsi.plan.meshes import Meshes
 from hofsi.plan.report import Item
+from hofsi.plan.sizes import linear_solvers
 
 __all__ = ["skipped_items"]
 
 
-def skipped_items(case: Case) -> Iterator[Item]:
+def skipped_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     """Everything that the case does not need."""
     yield from _without_material(case)
     yield from _without_bodies(case)
     yield from _without_motion(case)
-    yield from _without_iteration(case)
+    yield from _without_iteration(case, linear_solvers(case, meshes))
     yield from _without_output(case)
     yield from _unused_tables(case)
 
@@ -52,27 +55,24 @@ def _once(case: Case) -> str:
     return "twice, for the first step and the others" if several else "once"
 
 
-def _without_iteration(case: Case) -> Iterator[Item]:
+def _without_iteration(case: Case, solvers: Mapping[str, Choice]) -> Iterator[Item]:
     fluid = case.fluid
     if fluid is not None:
+        factor = "factorisation" if solvers["fluid"].solver == "direct" else "preconditioner"
         if fluid.model == "stokes":
-            kept = "" if moves(case) else f", and its {_factor(case)} is kept"
+            kept = "" if moves(case) else f", and its {factor} is kept"
             yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
         elif not iterates(case, fluid):
             meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
             again = convection_of_steps(case, fluid) == "linearised"
             unless = ", unless the flow changes at once, as after an impulsive start" if again else ""
-            yield Item("fluid's Newton iteration", f"linear steps: one {_factor(case)} a step{meshes}{unless}")
-    if case.linear.solver == "direct":
-        yield Item("algebraic multigrid", 'linear.solver = "direct"')
+            yield Item("fluid's Newton iteration", f"linear steps: one {factor} a step{meshes}{unless}")
+    if all(choice.solver == "direct" for choice in solvers.values()):
+        yield Item("multigrid", "LU serves" if case.linear.solver == "auto" else 'linear.solver = "direct"')
     if case.solids and all(solid.model == "linear" for solid in case.solids):
         yield Item("solid's Newton iteration", f"linear: factorised {_once(case)}")
     if isinstance(case.time, Steady):
         yield Item("time loop", "steady: no inertia, no time steps")
-
-
-def _factor(case: Case) -> str:
-    return "factorisation" if case.linear.solver == "direct" else "preconditioner"
 
 
 def _one_mesh_a_step(case: Case) -> bool:

@@ -123,8 +123,7 @@ class FluidEquations:
         constraints = self.boundary.constraints(points)
         if self._system is None or self._system_for is not constraints:
             pinned = self.enclosed(points).pinned
-            weights, places = self.geometry(points)[0].weights, points[self.space.velocity_cells].mean(axis=1)
-            self._system = fluid_system(self.space, constraints, pinned, self.linear, weights, places)
+            self._system = fluid_system(self.space, constraints, pinned, self.linear, points, self.counts)
             self._system_for = constraints
         return self._system
 

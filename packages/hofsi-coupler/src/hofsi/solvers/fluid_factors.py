@@ -18,6 +18,7 @@ __all__ = ["FluidFactors"]
 _LIMIT = 10  # iterations: more cost as much as new factors
 _FLOW = 0.5  # change of the velocity, as a part of the largest one
 _RATE = 2.0  # ratio of step sizes
+_CORRECTION = 1e-4  # residual that an iterative solver may leave, relative: the next iteration takes it away
 
 
 class FluidFactors:
@@ -64,7 +65,7 @@ class FluidFactors:
         self._counts.solves += 1
         if not self._lag or not isinstance(system, CondensedSystem):
             self._counts.factorised("new matrix")
-            return system.factorise(A).solve(r)
+            return system.factorise(A, tolerance=_CORRECTION).solve(r)
         reason = self._reason(system, velocity, rate)
         if reason or self._factor is None:
             self._counts.factorised(reason)
@@ -75,7 +76,7 @@ class FluidFactors:
         lagged = system.lagged(A, self._factor, goal, _LIMIT)
         x = lagged.solve(r)
         assert isinstance(lagged.factor, LaggedSolver)
-        self._counts.krylov_iterations += lagged.factor.iterations
+        self._counts.linear_iterations += lagged.factor.iterations
         if lagged.factor.renewed:
             self._counts.factorised("iterations")
             self._keep(system, lagged.factor.factor, velocity, rate)

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.case import LinearSettings
+from hofsi.counts import Counts
 from hofsi.fem.condensation import CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.fem.saddle_point import SaddlePointSystem
 from hofsi.fem.spaces import TaylorHood
+from hofsi.linear.choice import choose_solver
 from hofsi.linear.solver import Solver
 
 Array = NDArray[np.float64]
@@ -37,8 +39,15 @@ class FluidSystem(Protocol):
     boundary: int
     unknowns: Index
 
-    def factorise(self, A: Array) -> Solver:
-        """Make what solves, from element vectors (e, k) to all unknowns, with element matrices (e, k, k)."""
+    def prepare(self) -> None:
+        """Make what can be known before the numbers."""
+        ...
+
+    def factorise(self, A: Array, *, tolerance: float | None = None) -> Solver:
+        """Make what solves, from element vectors (e, k) to all unknowns, with element matrices (e, k, k).
+
+        Iteration may end at the given tolerance of the residual, relative to the right-hand side.
+        """
         ...
 
 
@@ -47,8 +56,8 @@ def fluid_system(
     constraints: NodeConstraints,
     pinned: tuple[int, ...],
     linear: LinearSettings,
-    weights: Array,
-    places: Array,
+    points: Array,
+    counts: Counts,
 ) -> FluidSystem:
     """Choose the linear systems of a fluid.
 
@@ -60,13 +69,21 @@ def fluid_system(
     pinned : tuple of int
         Pressure unknowns that are held fixed.
     linear : LinearSettings
-    weights : ndarray, shape (e, q)
-        Integration weights of the elements.
-    places : ndarray, shape (e, 2)
-        Where the elements are.
+    points : ndarray, shape (n, 2)
+        Where the nodes are.
+    counts : Counts
+        Where iterations and preconditioners are counted.
     """
-    if linear.solver == "direct":
+    places = points[space.velocity_cells].mean(axis=1)
+    kept = space.size - (space.dofs.shape[1] - space.boundary) * len(space.dofs)
+    if choose_solver(linear.solver, kept).solver == "direct":
         return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places)
-    mass = np.zeros(space.velocity_count)
-    np.add.at(mass, space.velocity_cells, weights @ space.velocity.N**2)
-    return SaddlePointSystem(space, constraints, pinned, mass, linear.tolerance)
+    return SaddlePointSystem(
+        space, constraints, pinned, places, _lengths(points[space.corners]), linear.tolerance, counts
+    )
+
+
+def _lengths(X: Array) -> Array:
+    """Lengths along ξ and η, shape (e, 2), of quads with corners X (e, 4, 2)."""
+    middles = 0.5 * (X + np.roll(X, -1, axis=1))  # of sides 0, η = -1, to 3, ξ = -1
+    return np.asarray(np.linalg.norm(middles[:, [1, 2]] - middles[:, [3, 0]], axis=2))

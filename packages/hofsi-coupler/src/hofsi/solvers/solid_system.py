@@ -10,6 +10,7 @@ from hofsi.case import LinearSettings
 from hofsi.fem.coarsening import skeleton_coarsening
 from hofsi.fem.condensation import CondensedSystem
 from hofsi.linear.amg import Coarsening, PatchMultigrid
+from hofsi.linear.choice import choose_solver
 from hofsi.linear.krylov import KrylovSolver
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_supports import SolidSupports
@@ -33,7 +34,7 @@ def solid_system(equations: SolidEquations, supports: SolidSupports, linear: Lin
     size, constraints = 2 * len(mesh.points), supports.constraints
     places = mesh.points[mesh.cells].mean(axis=1)
     system = CondensedSystem(equations.dofs, equations.boundary, size, constraints, places=places)
-    if linear.solver == "direct":
+    if choose_solver(linear.solver, size - system.inner * len(system.dofs)).solver == "direct":
         return system
     nodes = equations.dofs[:, : equations.boundary : 2] // 2
     coarsening = skeleton_coarsening(nodes, mesh.order, constraints, system.unknowns, mesh.points)
