@@ -109,14 +109,14 @@ def measure(scene: str, order: int, k: int, problem: str, solver: str, extra: Se
         "solver": solver,
         "prepare s": process_time() - start,
     }
-    nothing = {"solves": 0, "iterations": float("nan"), "solve s": float("nan")}
+    nothing: dict[str, object] = {"solves": 0, "iterations": None, "solve s": None}
     try:
         found = stepped(fluid, float(problem.split()[1])) if problem.startswith("step") else steady(fluid)
     except (LinearSolverError, MemoryError) as error:
         found = nothing
         print(f"{row}: {error}", flush=True)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    row |= {"third: iterations": float("nan"), "third: s": float("nan")} | found
+    row |= {"third: iterations": None, "third: s": None} | found
     return row | {"preconditioners": fluid.counts.preconditioners, "peak GiB": peak}
 
 

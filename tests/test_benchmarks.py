@@ -17,6 +17,7 @@ import pytest
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 TINY = {
     "curve_accuracy": ["--orders", "1", "3", "--elements", "8", "16", "--kinds", "arc", "nurbs, degree 3", "spline"],
+    "fluid_linear_solvers": ["--orders", "2", "--k", "2", "--problems", "stokes", "step 0.01"],
     "fluid_order": ["--orders", "2", "--elements", "1", "2", "--meshes", "blocks", "pseudo-solid"],
     "fluid_work_precision": ["--orders", "2", "4", "--counts", "1,2,6,2"],
     "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],

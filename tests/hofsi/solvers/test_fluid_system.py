@@ -130,8 +130,11 @@ def test_iterations_hardly_grow_with_the_mesh(flows, order, problem):
         else:
             flows.steady(solver)
         taken.append(solver.counts.linear_iterations / solver.counts.solves)
-    assert max(taken) <= 25
-    assert taken[-1] <= 1.3 * taken[0] + 1.0
+    if problem == "convection":  # corrections to four digits, also with preconditioners of earlier ones
+        assert max(taken) <= 12
+    else:
+        assert max(taken) <= 25
+        assert taken[-1] <= 1.3 * taken[0] + 1.0
 
 
 def test_thin_elements_at_a_wall(flows):
