@@ -7,9 +7,11 @@ import pytest
 import scipy.sparse as sp
 
 from hoblock import BlockStructure, generate
+from hoblock.reference import differentiation_matrix, gauss_legendre, gauss_lobatto, lagrange
 from hofsi.fem.element import element_table
 from hofsi.fem.geometry import element_geometry, physical_gradients
 from hofsi.kernels import navier_stokes as kernel
+from hofsi.kernels import tensor_products
 
 skfem = pytest.importorskip("skfem")
 helpers = pytest.importorskip("skfem.helpers")
@@ -33,6 +35,9 @@ class Peers:
         mesh = mesh.with_points(mesh.points + 0.03 * rng.uniform(-1.0, 1.0, mesh.points.shape))
         self.mesh, self.table = mesh, element_table(2, COUNT)
         self.geometry = element_geometry(mesh.points[mesh.cells], self.table)
+        nodes, points = gauss_lobatto(2), gauss_legendre(COUNT)[0]
+        values = lagrange(nodes, points)
+        self.products = tensor_products.product_tables(values, values @ differentiation_matrix(nodes), np.arange(9))
         self.dNx, self.dNy = physical_gradients(self.geometry, self.table)
         self.u, self.a = rng.standard_normal((2, len(mesh.points), 2))
         peer = skfem.MeshQuad2(mesh.points.T, mesh.cells[:, CORNERS_SIDES_CENTRE].T)
@@ -42,6 +47,14 @@ class Peers:
         self.pressure = skfem.Basis(peer, skfem.ElementQuad1(), quadrature=rule)
         self.our_of_velocity = self._interleaved(self.velocity)
         self.our_of_pressure = self._nearest(self.pressure.doflocs)
+
+    def convection(self, density, a):
+        c = kernel.convection(self.geometry.weights, self.geometry.J_inv, density, self.table.N @ a[self.mesh.cells])
+        return tensor_products.transport(self.products, *c)
+
+    def reaction(self, density, gradient):
+        c = kernel.reaction(self.geometry.weights, density, gradient)
+        return np.split(tensor_products.mass(self.products, c.reshape(-1, c.shape[-1])), 4)
 
     def _nearest(self, places):
         distance = np.hypot(*(self.mesh.points[:, :, None] - places[None]).transpose(1, 0, 2))
@@ -103,36 +116,32 @@ def test_grad_div_term(peers):
 
 
 def test_mass(peers):
-    block = kernel.transport(peers.table.N, peers.dNx, peers.dNy, peers.geometry.weights, 1.5, 2.0, None)
+    block = tensor_products.mass(peers.products, 3.0 * peers.geometry.weights)
     zero = np.zeros_like(block)
     peers.same(peers.ours((block, zero, zero, block)), peers.theirs(lambda u, v, w: 3.0 * dot(u, v)))
 
 
-def test_mass_and_convection_in_one(peers):
-    at_points = peers.table.N @ peers.a[peers.mesh.cells]
-    block = kernel.transport(peers.table.N, peers.dNx, peers.dNy, peers.geometry.weights, 1.5, 2.0, at_points)
+def test_convection(peers):
+    block = peers.convection(2.0, peers.a)
     zero = np.zeros_like(block)
-    theirs = peers.theirs(lambda u, v, w: 2.0 * (1.5 * dot(u, v) + dot(mul(grad(u), w["a"]), v)), a=peers.a)
+    theirs = peers.theirs(lambda u, v, w: 2.0 * dot(mul(grad(u), w["a"]), v), a=peers.a)
     peers.same(peers.ours((block, zero, zero, block)), theirs)
 
 
 def test_newtons_term(peers):
     gradient = kernel.velocity_gradient(peers.dNx, peers.dNy, peers.u[peers.mesh.cells])
-    blocks = kernel.reaction(peers.table.N, peers.geometry.weights, 2.0, gradient)
+    blocks = peers.reaction(2.0, gradient)
     peers.same(peers.ours(blocks), peers.theirs(lambda u, v, w: 2.0 * dot(mul(grad(w["u"]), u), v), u=peers.u))
 
 
 def test_convection_and_newtons_term_are_the_derivative_of_convection(peers):
     def convection(u):
-        cells = peers.mesh.cells
-        block = kernel.transport(
-            peers.table.N, peers.dNx, peers.dNy, peers.geometry.weights, 0.0, 2.0, peers.table.N @ u[cells]
-        )
+        block = peers.convection(2.0, u)
         zero = np.zeros_like(block)
         return peers.ours((block, zero, zero, block))
 
     gradient = kernel.velocity_gradient(peers.dNx, peers.dNy, peers.u[peers.mesh.cells])
-    newton = peers.ours(kernel.reaction(peers.table.N, peers.geometry.weights, 2.0, gradient))
+    newton = peers.ours(peers.reaction(2.0, gradient))
     # Convection is quadratic: c(u + d) - c(u - d) = 2 c'(u) d without remainder.
     d = peers.a
     difference = convection(peers.u + d) @ (peers.u + d).ravel() - convection(peers.u - d) @ (peers.u - d).ravel()

@@ -18,6 +18,7 @@ from hofsi.build import Problem, build
 from hofsi.case import Case, OutputSettings, Steady
 from hofsi.errors import ConvergenceError
 from hofsi.io.summary import machine, versions, write_summary
+from hofsi.memory import keep_freed_memory
 from hofsi.notes import notes
 from hofsi.observers.observer import Observer
 from hofsi.observers.progress import Progress
@@ -100,6 +101,7 @@ def run(
         After everything has been written, with the status "interrupted".
     """
     began = perf_counter()
+    keep_freed_memory()
     _check_plotting(case.output)
     try:
         problem = build(case)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["divergence", "grad_div", "load", "reaction", "transport", "velocity_gradient", "viscous"]
+__all__ = ["convection", "divergence", "grad_div", "load", "reaction", "velocity_gradient", "viscous"]
 
 
 def viscous(dNx: Array, dNy: Array, weights: Array, viscosity: float) -> tuple[Array, Array, Array, Array]:
@@ -37,41 +37,24 @@ def grad_div(dNx: Array, dNy: Array, weights: Array, factor: float) -> tuple[Arr
     return tx @ (w * dNx), xy, xy.transpose(0, 2, 1), ty @ (w * dNy)
 
 
-def transport(
-    N: Array, dNx: Array, dNy: Array, weights: Array, rate: float, density: float, advective: Array | None
-) -> Array:
-    """∫ ρ N_i (c N_j + a·∇N_j), shape (e, i, j); the same for both components.
+def convection(weights: Array, J_inv: Array, density: float, advective: Array) -> tuple[Array, Array]:
+    """Coefficients c_ξ and c_η of ∫ ρ N_i (a·∇N_j) = ∫ N_i (c_ξ ∂_ξ N_j + c_η ∂_η N_j), each (e, q).
 
     Parameters
     ----------
-    rate : float
-        c, weight of the new value in the time derivative; 0 if steady.
-    advective : ndarray, shape (e, q, 2), or None
-        a; None for none.
+    J_inv : ndarray, shape (e, q, 2, 2)
+        ∂ξ_c/∂x_d.
+    advective : ndarray, shape (e, q, 2)
+        a.
     """
     w = density * weights
-    if advective is None:
-        return np.asarray(N.T @ ((rate * w)[:, :, None] * N))
-    right = (w * advective[..., 0])[:, :, None] * dNx
-    right += (w * advective[..., 1])[:, :, None] * dNy
-    if rate:
-        right += (rate * w)[:, :, None] * N
-    return np.asarray(N.T @ right)
+    c = (J_inv @ advective[..., None])[..., 0]
+    return w * c[..., 0], w * c[..., 1]
 
 
-def reaction(N: Array, weights: Array, density: float, gradient: Array) -> tuple[Array, Array, Array, Array]:
-    """Blocks xx, xy, yx, yy of Newton's term ∫ ρ N_i (∂_b u_a) N_j, each (e, i, j).
-
-    Parameters
-    ----------
-    gradient : ndarray, shape (e, q, 2, 2)
-        ∂_b u_a.
-    """
-    w = density * weights
-    xx, xy, yx, yy = (
-        np.asarray(N.T @ ((w * gradient[..., a, b])[:, :, None] * N)) for a, b in ((0, 0), (0, 1), (1, 0), (1, 1))
-    )
-    return xx, xy, yx, yy
+def reaction(weights: Array, density: float, gradient: Array) -> Array:
+    """Coefficients of Newton's term ∫ ρ N_i (∂_b u_a) N_j, shape (a, b, e, q), of gradients ∂_b u_a (e, q, a, b)."""
+    return np.asarray((density * weights) * gradient.transpose(2, 3, 0, 1))
 
 
 def divergence(P: Array, dNx: Array, dNy: Array, weights: Array) -> tuple[Array, Array]:

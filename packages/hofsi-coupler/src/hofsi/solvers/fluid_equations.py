@@ -6,12 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hoblock import QuadMesh
+from hoblock.reference import differentiation_matrix, gauss_legendre, gauss_lobatto, lagrange
 from hofsi import case
 from hofsi.counts import Counts
 from hofsi.fem.assembly import assemble_vector
+from hofsi.fem.element import boundary_first
 from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
+from hofsi.kernels import tensor_products
 from hofsi.linear.solver import Solver
 from hofsi.solvers.backflow import Backflow
 from hofsi.solvers.enclosed import EnclosedRegions
@@ -53,6 +56,7 @@ class FluidEquations:
     ) -> None:
         self.mesh, self.fluid, self.nonlinear, self.linear = mesh, fluid, nonlinear, linear
         self.space = TaylorHood.on(mesh)
+        self.products = _velocity_products(self.space)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.backflow = Backflow(mesh, self.space, fluid.boundaries, fluid.density)
         self.counts = Counts()
@@ -90,7 +94,7 @@ class FluidEquations:
                 more = kernel.grad_div(dNx, dNy, geometry.weights, self.fluid.grad_div)
                 xx, xy, yx, yy = (a + b for a, b in zip((xx, xy, yx, yy), more, strict=True))
             if rate:
-                mass = kernel.transport(space.velocity.N, dNx, dNy, geometry.weights, rate, self.fluid.density, None)
+                mass = tensor_products.mass(self.products, rate * self.fluid.density * geometry.weights)
                 xx, yy = xx + mass, yy + mass
             for a, b, block in ((0, 0, xx), (0, 1, xy), (1, 0, yx), (1, 1, yy)):
                 space.put(A, a, b, block)
@@ -144,3 +148,11 @@ class FluidEquations:
             self._stokes = (A, system, system.factorise(A))
             self.counts.factorised("mesh or step size")
         return self._stokes[2]
+
+
+def _velocity_products(space: TaylorHood) -> tensor_products.ProductTables:
+    """Tables for integrals of products of the velocity's basis, at the element's quadrature points."""
+    p = space.order
+    nodes, (points, _) = gauss_lobatto(p), gauss_legendre(round(len(space.velocity.weights) ** 0.5))
+    values = lagrange(nodes, points)
+    return tensor_products.product_tables(values, values @ differentiation_matrix(nodes), boundary_first(p)[0])

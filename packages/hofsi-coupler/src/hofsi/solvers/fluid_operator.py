@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from hofsi.fem.assembly import assemble_vector
 from hofsi.kernels import navier_stokes as kernel
+from hofsi.kernels import tensor_products
 from hofsi.solvers.fluid_equations import FluidEquations
 from hofsi.solvers.fluid_system import FluidSystem
 
@@ -75,12 +76,13 @@ class FluidOperator:
         space = self._equations.space
         A = self.without_convection().copy()
         geometry, dNx, dNy = self._equations.geometry(self._points)
-        N, weights = space.velocity.N, geometry.weights
-        a = N @ (velocity - self._mesh_velocity)[space.velocity_cells]
-        convection = kernel.transport(N, dNx, dNy, weights, 0.0, self._density, a)
+        a = space.velocity.N @ (velocity - self._mesh_velocity)[space.velocity_cells]
+        c = kernel.convection(geometry.weights, geometry.J_inv, self._density, a)
+        convection = tensor_products.transport(self._equations.products, *c)
         if newton:
             gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
-            xx, xy, yx, yy = kernel.reaction(N, weights, self._density, gradient)
+            g = kernel.reaction(geometry.weights, self._density, gradient).reshape(-1, a.shape[1])
+            xx, xy, yx, yy = np.split(tensor_products.mass(self._equations.products, g), 4)
             space.add(A, 0, 1, xy)
             space.add(A, 1, 0, yx)
             space.add(A, 0, 0, np.add(xx, convection, out=xx))
