@@ -78,7 +78,7 @@ def stepped(solver: FluidSolver, dt: float) -> dict[str, object]:
         made.insert(0, dt)
         before = solver.counts.linear_iterations
         start = process_time()
-        step = solver.begin_step(state, points, made, dt * (number + 1), linear=True)
+        step = solver.begin_step(state, points, made, dt * (number + 1), convection="extrapolated")
         step.solve(held(solver))
         state = step.accept()
         seconds.append(process_time() - start)

@@ -131,7 +131,7 @@ def test_iterations_hardly_grow_with_the_mesh(flows, order, problem):
             flows.steady(solver)
         taken.append(solver.counts.linear_iterations / solver.counts.solves)
     if problem == "convection":  # corrections to four digits, also with preconditioners of earlier ones
-        assert max(taken) <= 12
+        assert max(taken) <= 15
     else:
         assert max(taken) <= 25
         assert taken[-1] <= 1.3 * taken[0] + 1.0
