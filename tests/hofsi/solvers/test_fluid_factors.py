@@ -86,3 +86,14 @@ def test_without_lag_every_matrix_is_factorised(flows):
     found = reasons(solver, lambda: start(flows, solver))
     assert found == {"new matrix": solver.counts.solves}
     assert solver.counts.linear_iterations == 0
+
+
+def test_factors_of_another_mesh_do_not_serve_unseen(flows):
+    """Each step has a mesh of its own: every iteration has its own matrix."""
+    solver = channel(flows, True)
+    X, state = solver.mesh.points, start(flows, solver)
+    before = solver.counts.assemblies, solver.counts.solves
+    flows.march(solver, state, (0.05,) * 3, lambda t: X * [1.0 + 1e-9 * t, 1.0])
+    made, solved = solver.counts.assemblies - before[0], solver.counts.solves - before[1]
+    assert made >= 3
+    assert solved >= made

@@ -51,7 +51,11 @@ class CondensedSystem:
         Free unknowns on the elements' boundaries, in global numbers.
     skeleton : ndarray, shape (e, boundary)
         Numbers of these of each element, among ``unknowns``; -1 where constrained.
+    exact : bool
+        Whether factors solve exactly, so that they can serve another matrix as preconditioner.
     """
+
+    exact = True
 
     def __init__(
         self,

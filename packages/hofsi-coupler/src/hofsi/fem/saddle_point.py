@@ -49,6 +49,8 @@ class SaddlePointSystem(CondensedSystem):
         Where iterations and preconditioners are counted.
     """
 
+    exact = False
+
     def __init__(
         self,
         space: TaylorHood,

@@ -2,23 +2,47 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.counts import Counts
-from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.lagged import LaggedSolver
 from hofsi.solvers.fluid_system import FluidSystem
 
 Array = NDArray[np.float64]
 
-__all__ = ["FluidFactors"]
+__all__ = ["FluidFactors", "Problem"]
 
 _LIMIT = 10  # iterations: more cost as much as new factors
 _FLOW = 0.5  # change of the velocity, as a part of the largest one
 _RATE = 2.0  # ratio of step sizes
+_NEAR = 1e-2  # change of the velocity, likewise, up to which factors serve without a new matrix, ...
+_CONTRACTION = 0.2  # ... as long as the residual falls at least by that
 _CORRECTION = 1e-4  # residual that an iterative solver may leave, relative: the next iteration takes it away
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What matrices depend on besides the velocity.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2)
+        The same array if the mesh is the same.
+    rate : float
+        Weight of the new velocity in the time derivative; 0 if steady.
+    share : float
+        Of the convection.
+    """
+
+    points: Array
+    rate: float
+    share: float
 
 
 class FluidFactors:
@@ -27,6 +51,10 @@ class FluidFactors:
     A matrix is factorised if there are no factors yet ("first"), if the free unknowns are others ("unknowns"), if the
     step size has changed by more than a factor of two ("step size"), if the velocity has changed by more than half of
     the largest ("flow"), or if GMRES needs more than ten iterations with the factors at hand ("iterations").
+
+    As long as neither mesh nor step size nor share of the convection changes and the velocity hardly does, the
+    factors, inner unknowns of the elements included, serve as they are (a chord iteration): no matrix is made at all,
+    until the residual falls by less than a factor of five.
 
     Parameters
     ----------
@@ -41,20 +69,34 @@ class FluidFactors:
         self._factor: CheckedSolver | None = None
         self._system: CondensedSystem | None = None
         self._velocity, self._rate = np.zeros(0), 0.0
+        self._chord: tuple[CondensedFactor, Problem, Array] | None = None
+        self._before = np.inf
 
-    def solve(self, system: FluidSystem, A: Array, r: Array, velocity: Array, rate: float, goal: float) -> Array:
+    def solve(
+        self,
+        system: FluidSystem,
+        problem: Problem,
+        matrices: Callable[[], Array],
+        r: Array,
+        velocity: Array,
+        norm: float,
+        goal: float,
+    ) -> Array:
         """Solve once with element matrices.
 
         Parameters
         ----------
         system : FluidSystem
-        A : ndarray, shape (e, k, k)
+        problem : Problem
+            What the matrices depend on besides the velocity.
+        matrices : callable
+            Makes them, shape (e, k, k).
         r : ndarray, shape (e, k)
             Right-hand side, element by element.
         velocity : ndarray, shape (n, 2)
-            The one that A belongs to.
-        rate : float
-            Weight of the new velocity in the time derivative that is part of A.
+            The one that the matrices belong to.
+        norm : float
+            Of the right-hand side.
         goal : float
             Norm of the residual that may be left; new factors solve more exactly.
 
@@ -63,7 +105,12 @@ class FluidFactors:
         ndarray, shape (size,)
         """
         self._counts.solves += 1
-        if not self._lag or not isinstance(system, CondensedSystem):
+        if self._chord is not None and self._chord_serves(problem, velocity, norm):
+            self._before = norm
+            return self._chord[0].solve(r)
+        self._chord, self._before = None, np.inf
+        A, rate = matrices(), problem.rate
+        if not self._lag or not isinstance(system, CondensedSystem) or not system.exact:
             self._counts.factorised("new matrix")
             return system.factorise(A, tolerance=_CORRECTION).solve(r)
         reason = self._reason(system, velocity, rate)
@@ -72,6 +119,7 @@ class FluidFactors:
             solver = system.factorise(A)
             if isinstance(solver.factor, CheckedSolver):
                 self._keep(system, solver.factor, velocity, rate)
+                self._chord = solver, problem, self._velocity
             return solver.solve(r)
         lagged = system.lagged(A, self._factor, goal, _LIMIT)
         x = lagged.solve(r)
@@ -81,6 +129,15 @@ class FluidFactors:
             self._counts.factorised("iterations")
             self._keep(system, lagged.factor.factor, velocity, rate)
         return x
+
+    def _chord_serves(self, problem: Problem, velocity: Array, norm: float) -> bool:
+        """Whether the last factors belong to the same problem at nearly the same velocity, and have served so far."""
+        assert self._chord is not None
+        _, of, at = self._chord
+        same = of.points is problem.points and of.rate == problem.rate and of.share == problem.share
+        if not same or norm > _CONTRACTION * self._before:
+            return False
+        return bool(np.abs(velocity - at).max(initial=0.0) <= _NEAR * np.abs(velocity).max(initial=0.0))
 
     def _keep(self, system: CondensedSystem, factor: CheckedSolver, velocity: Array, rate: float) -> None:
         self._system, self._factor, self._velocity, self._rate = system, factor, velocity.copy(), rate

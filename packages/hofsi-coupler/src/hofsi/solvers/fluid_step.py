@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,7 @@ from hofsi.fem.assembly import assemble_vector
 from hofsi.linear.solver import Solver
 from hofsi.solvers.continuation import approach
 from hofsi.solvers.fluid_equations import FluidEquations
+from hofsi.solvers.fluid_factors import Problem
 from hofsi.solvers.fluid_operator import FluidOperator
 from hofsi.solvers.fluid_state import FluidState
 
@@ -195,11 +198,12 @@ class FluidStep:
             if iteration == limit:
                 break
             velocity = unknowns[: self._expected.size].reshape(-1, 2)
-            J = self._operator.matrices(velocity, newton=not picard)
+            matrices = partial(self._operator.matrices, velocity, newton=not picard)
+            problem = Problem(self.points, self._rate, self._operator.share)
             assert self._residual is not None
             r, goal = self._residual, norm * _enough(norm / scale, tolerance)
             system = equations.system(self.points)
-            delta = equations.factors.solve(system, J, r, velocity, self._rate, goal)
+            delta = equations.factors.solve(system, problem, matrices, r, velocity, norm, goal)
             equations.counts.iterations += 1
             unknowns, norm, scale = self._damped(unknowns, delta, norm)
         if not stop:

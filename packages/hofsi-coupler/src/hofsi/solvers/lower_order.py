@@ -26,7 +26,8 @@ _ROUGH = 1e-4  # tolerance of the residual there; what the lower order leaves ou
 def start_of_lower_order(solver: FluidSolver, state: FluidState) -> FluidState:
     """Replace a state at rest by the steady flow of half the order, which starts from half of that in turn.
 
-    The lower order costs a tenth to a fifth; from its solution Newton's method takes two iterations instead of five.
+    The lower order costs a tenth to a fifth; from its solution Newton's method makes one or two matrices instead of
+    five.
 
     Parameters
     ----------
