@@ -10,10 +10,10 @@ from typing import Literal
 
 __all__ = ["Choice", "choose_solver", "direct_memory", "machine_memory"]
 
-_OVERTAKEN = 1_600_000
+_OVERTAKEN = 3_000_000
 """Condensed unknowns from which a solution by multigrid takes less time than one by LU.
 
-Carried on from measurements up to 230 000, see docs/linear_solvers.md.
+Carried on from measurements up to 930 000, see docs/linear_solvers.md.
 """
 
 _ENTRIES = 27.0
