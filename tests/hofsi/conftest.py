@@ -113,6 +113,50 @@ QUANTITIES = FLAP[FLAP.index("[output]") :]
 Changes = tuple[str, str]
 
 
+CHANNEL = """
+[mesh]
+order = 3
+elements = 2
+
+[mesh.vertices]
+a = [0, 0]
+b = [2, 0]
+c = [2, 1]
+d = [0, 1]
+
+[mesh.blocks]
+fluid = [["a", "b", "c", "d"]]
+
+[mesh.edges]
+bottom = [["a", "b"]]
+right = [["b", "c"]]
+top = [["c", "d"]]
+left = [["d", "a"]]
+
+[fluid]
+density = 1.0
+viscosity = 0.1
+
+[[fluid.boundary]]
+on = ["bottom", "top"]
+type = "no-slip"
+
+[[fluid.boundary]]
+on = "left"
+type = "velocity"
+x = "4*y*(1 - y)"
+y = 0
+
+[[fluid.boundary]]
+on = "right"
+type = "do-nothing"
+
+[time]
+dt = 0.1
+steps = 5
+"""
+
+
 @pytest.fixture
 def flap() -> str:
     """The scene as text."""
@@ -147,3 +191,9 @@ def solid_alone() -> str:
         line = text[text.index(f"\n{name} = ") + 1 :]
         text = text.replace(line[: line.index("\n") + 1], "")
     return text.replace("[time]", '[[solid.boundary]]\non = "flap"\ntype = "free"\n\n[time]')
+
+
+@pytest.fixture
+def channel() -> str:
+    """A scene of flow through a channel, as text."""
+    return CHANNEL

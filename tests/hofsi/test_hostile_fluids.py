@@ -3,59 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from hofsi.cli import main
 
-CHANNEL = """
-[mesh]
-order = 2
-elements = 2
-
-[mesh.vertices]
-a = [0, 0]
-b = [2, 0]
-c = [2, 1]
-d = [0, 1]
-
-[mesh.blocks]
-fluid = [["a", "b", "c", "d"]]
-
-[mesh.edges]
-bottom = [["a", "b"]]
-right = [["b", "c"]]
-top = [["c", "d"]]
-left = [["d", "a"]]
-
-[fluid]
-density = 1.0
-viscosity = 0.1
-
-[[fluid.boundary]]
-on = ["bottom", "top"]
-type = "no-slip"
-
-[[fluid.boundary]]
-on = "left"
-type = "velocity"
-x = "4*y*(1 - y)"
-y = 0
-
-[[fluid.boundary]]
-on = "right"
-type = "do-nothing"
-
-[time]
-dt = 0.1
-steps = 4
-
-[output]
-fields = false
-plots = false
-"""
-VISCOSITY, INFLOW, TIME = "viscosity = 0.1", 'x = "4*y*(1 - y)"', "dt = 0.1\nsteps = 4"
+VISCOSITY, INFLOW, TIME = "viscosity = 0.1", 'x = "4*y*(1 - y)"', "dt = 0.1\nsteps = 5"
 OUTLET, STEADY = 'type = "do-nothing"', "steady = true"
 INLET = f'type = "velocity"\n{INFLOW}\ny = 0'
 
@@ -119,14 +74,23 @@ LATE = {
 }
 
 
-def written(folder: Path, changes: list[tuple[str, str]]) -> str:
-    text = CHANNEL
-    for old, new in changes:
-        assert text.count(old) == 1, f"{old!r} occurs {text.count(old)} times"
-        text = text.replace(old, new)
-    path = folder / "scene.toml"
-    path.write_text(text, encoding="utf-8")
-    return str(path)
+Written = Callable[[list[tuple[str, str]]], str]
+
+
+@pytest.fixture
+def written(tmp_path: Path, channel: str) -> Written:
+    """A function that changes the channel, writes it to a file, and returns the file's name."""
+
+    def write(changes: list[tuple[str, str]]) -> str:
+        text = channel + "\n[output]\nfields = false\nplots = false\n"
+        for old, new in changes:
+            assert text.count(old) == 1, f"{old!r} occurs {text.count(old)} times"
+            text = text.replace(old, new)
+        path = tmp_path / "scene.toml"
+        path.write_text(text, encoding="utf-8")
+        return str(path)
+
+    return write
 
 
 def one_message(capsys: pytest.CaptureFixture[str]) -> str:
@@ -139,10 +103,10 @@ def one_message(capsys: pytest.CaptureFixture[str]) -> str:
 @pytest.mark.parametrize("command", ["check", "run"])
 @pytest.mark.parametrize("name", BAD)
 def test_bad_input_is_refused_before_anything_is_computed(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, command: str
+    tmp_path: Path, written: Written, capsys: pytest.CaptureFixture[str], name: str, command: str
 ) -> None:
     changes, message = BAD[name]
-    scene, folder = written(tmp_path, changes), tmp_path / "out"
+    scene, folder = written(changes), tmp_path / "out"
     arguments = ["check", scene] if command == "check" else ["run", scene, "-o", str(folder), "--quiet"]
     assert main(arguments) == 2
     text = one_message(capsys)
@@ -153,17 +117,19 @@ def test_bad_input_is_refused_before_anything_is_computed(
 
 @pytest.mark.parametrize("name", LATE)
 def test_what_only_a_run_can_find_ends_it_with_a_message(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
+    tmp_path: Path, written: Written, capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
     changes, code, message = LATE[name]
     folder = tmp_path / "out"
-    assert main(["run", written(tmp_path, changes), "-o", str(folder), "--quiet"]) == code
+    assert main(["run", written(changes), "-o", str(folder), "--quiet"]) == code
     assert message in one_message(capsys)
     assert json.loads((folder / "summary.json").read_text(encoding="utf-8"))["status"] == "failed"
 
 
-def test_notes_are_part_of_check_and_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    scene = written(tmp_path, [(OUTLET, INLET.replace("4*y", "4.04*y"))])
+def test_notes_are_part_of_check_and_of_a_run(
+    tmp_path: Path, written: Written, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = written([(OUTLET, INLET.replace("4*y", "4.04*y"))])
     assert main(["check", scene]) == 0
     output = capsys.readouterr()
     assert output.err == ""
