@@ -178,6 +178,7 @@ def test_big_endian_files(layouts, path):
         ("2 1 2 7 1 10 20", "2 1 2 7 1 10 5", "1 lines of 'wall' are no sides of quadrilaterals"),
         ("20 2 0 0", "20 2 0 0.5", "z runs from 0 to 0.5; expected a plane mesh"),
         ("20 2 0 0", "20 nan 0 0", "a coordinate that is not finite"),
+        ("20 2 0 0", "20 2e200 0 0", "has the coordinate 2e\\+200; expected at most 1e\\+100"),
         ("20 2 0 0", "20 x 0 0", r"\$Nodes: there should be a number"),
         ("$Nodes\n5", "$Nodes\n6", r"\$Nodes: the section ends too early"),
         ("$Nodes\n5", "$Nodes\n999999999999", r"\$Nodes: the section ends too early"),

@@ -23,6 +23,7 @@ Bool = NDArray[np.bool_]
 __all__ = ["assembled", "directed_sides"]
 
 _NONE: Mapping[str, Index] = MappingProxyType({})
+_LARGEST = 1e100  # coordinate; squares of larger ones may overflow in what is computed from a mesh
 _CCW = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])  # corners of sides 0 to 3, counter-clockwise
 
 
@@ -124,6 +125,11 @@ def _check_corners(path: str | Path, corners: Index) -> None:
 def _planar(path: str | Path, points: Array) -> Array:
     if not np.isfinite(points).all():
         raise MeshFileError(f"{path}: a node has a coordinate that is not finite. Write the file anew.")
+    if np.abs(points).max(initial=0.0) > _LARGEST:
+        raise MeshFileError(
+            f"{path}: a node has the coordinate {np.abs(points).max():.3g}; expected at most {_LARGEST:g}, so that "
+            "areas do not overflow. The file is damaged, or its unit of length is far too small: write it anew."
+        )
     return planar(path, points)
 
 
