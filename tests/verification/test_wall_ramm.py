@@ -44,11 +44,13 @@ def test_meshes_that_do_not_drift_have_the_same_limit_cycle(runs):
 
 
 def test_the_mover_hardly_matters(runs):
-    amplitudes = []
+    """Where the mesh depends on the flap's position alone; the one of the optimisation drifts, and 5.2 % are left."""
+    amplitudes = {}
     for mover, values in runs.values.items():
         late = values[runs.times[mover] > 2.5]
-        amplitudes.append((np.max(late) - np.min(late)) / 2.0)
-    assert amplitudes[1:] == pytest.approx([amplitudes[0]] * 2, rel=0.1)
+        amplitudes[mover] = (np.max(late) - np.min(late)) / 2.0
+    assert amplitudes["pseudo-solid"] == pytest.approx(amplitudes["barrier"], rel=0.05)
+    assert amplitudes["angle-optimisation"] == pytest.approx(amplitudes["barrier"], rel=0.06)
 
 
 def test_meshes_that_do_not_drift_agree_from_the_start(runs):
