@@ -108,25 +108,35 @@ def test_a_steady_case(read_changed: Reader, solid_alone: str, tmp_path: Path) -
 
 
 def test_a_step_that_fails_loses_nothing(read_changed: Reader, tmp_path: Path) -> None:
+    """The force sets in at t = 0.25, within the third step: as much of the time before as the halved steps reach."""
     case = replace(read_changed(TORN), output=TABLES_ONLY)
     good = run(replace(read_changed(("end = 2.0", "end = 0.2")), output=TABLES_ONLY), tmp_path / "good")
     result = run(case, tmp_path / "torn")
     assert result.status == "failed"
-    assert "t = 0.3" in result.reason
-    assert list(result.times) == list(good.times)
-    assert list(result.series["u_x"]) == list(good.series["u_x"])
-    assert len(table(tmp_path / "torn" / "steps.csv")) == 2
+    assert "t = 0.25" in result.reason
+    assert "halved time.halvings = 4 times" in result.reason
+    assert list(result.times[:2]) == list(good.times)
+    assert list(result.series["u_x"][:2]) == list(good.series["u_x"])
+    assert result.times[-1] == pytest.approx(0.25, abs=0.0063)
+    steps = table(tmp_path / "torn" / "steps.csv")
+    assert len(steps) == len(result.times) > 2
+    assert int(steps[2]["rejected"]) >= 1
+    assert steps[2]["rejected_because"] == "NewtonError"
     data = summary(tmp_path / "torn")
-    assert (data["status"], data["reason"], data["counts"]["steps"]) == ("failed", result.reason, 2)
-    assert data["quantities"]["u_x"]["last"] == good.series["u_x"][-1]
+    assert (data["status"], data["reason"], data["counts"]["steps"]) == ("failed", result.reason, len(steps))
+    assert data["quantities"]["u_x"]["last"] == result.series["u_x"][-1]
+    rejected = sum(int(step["rejected"]) for step in steps)
+    assert (data["time_steps"]["dt_max"], data["time_steps"]["rejected"]) == (0.1, {"NewtonError": rejected})
+    assert any("The step of 0.1 was divided" in note for note in data["notes"])
 
 
 def test_a_first_step_that_fails_leaves_a_summary(read_changed: Reader, tmp_path: Path) -> None:
-    case = read_changed((TORN[0], TORN[1].replace("t > 0.25", "t > 0.05")))
+    case = read_changed((TORN[0], TORN[1].replace("t > 0.25", "t > 0")))
     result = run(replace(case, output=replace(TABLES_ONLY, plots=True)), tmp_path)
     data = summary(tmp_path)
     assert (data["status"], data["t"], data["counts"]["steps"], data["quality"]) == ("failed", None, 0, {})
     assert data["quantities"]["u_x"]["last"] is None
+    assert data["time_steps"] == {}
     assert table(tmp_path / "quantities.csv") == []
     assert result.times.size == 0
 

@@ -4,7 +4,7 @@ import pytest
 import scipy.linalg  # noqa: F401  (its BLAS is one of those to be held)
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from hofsi.case import Steady
+from hofsi.case import Steady, Unsteady
 from hofsi.records import State
 from hofsi.simulate import simulate
 from hofsi.threads import one_thread
@@ -67,7 +67,7 @@ class _Counting:
 
 
 @pytest.mark.usefixtures("two_threads")
-@pytest.mark.parametrize("time", [Steady(), SimpleNamespace(start=0.0, steps=2, step=lambda k: (0.1 * k, 0.1))])
+@pytest.mark.parametrize("time", [Steady(), Unsteady(0.1, 0.0, 0.2, 2)])
 def test_steps_are_computed_with_one_thread_and_observed_with_all(time):
     march = _Counting()
     problem = SimpleNamespace(case=SimpleNamespace(time=time), march=march)

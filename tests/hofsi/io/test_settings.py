@@ -154,3 +154,32 @@ def test_whole_numbers_of_steps_stay_whole(dt: float, end: float, steps: int) ->
     assert isinstance(time, Unsteady)
     assert time.steps == steps
     assert time.step(steps)[1] == dt
+
+
+def test_steps_may_be_halved_four_times_and_ten_with_a_tolerance():
+    time = read_time(Table({"dt": 0.1, "end": 1.0}, "time"))
+    assert (time.halvings, time.tolerance, time.first) == (4, None, None)
+    time = read_time(Table({"dt": 0.1, "end": 1.0, "tolerance": 1e-3}, "time"))
+    assert (time.halvings, time.tolerance, time.first) == (10, 1e-3, pytest.approx(0.1 / 16))
+    time = read_time(Table({"dt": 0.1, "end": 1.0, "tolerance": 1e-3, "halvings": 2}, "time"))
+    assert (time.halvings, time.first) == (2, pytest.approx(0.025))
+    time = read_time(Table({"dt": 0.1, "end": 1.0, "first": 0.02, "halvings": 3}, "time"))
+    assert (time.halvings, time.tolerance, time.first) == (3, None, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("keys", "place"),
+    [
+        ({"tolerance": 0.0}, "time.tolerance"),
+        ({"tolerance": 1.0}, "time.tolerance"),
+        ({"halvings": -1}, "time.halvings"),
+        ({"halvings": 41}, "time.halvings"),
+        ({"first": 0.2}, "time.first"),
+        ({"first": 0.006}, "time.first"),
+        ({"first": 0.0}, "time.first"),
+    ],
+)
+def test_divisions_out_of_range_are_refused(keys, place):
+    with pytest.raises(SceneError) as caught:
+        read_time(Table({"dt": 0.1, "end": 1.0, **keys}, "time"))
+    assert caught.value.place == place

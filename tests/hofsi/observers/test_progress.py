@@ -27,7 +27,7 @@ class Hand:
 
 
 def record(step: int, **others: Any) -> StepRecord:
-    return StepRecord(step, 0.05 * step, 0.05, State(), **others)
+    return StepRecord(step, 0.05 * step, 0.05, State(), done=float(step), **others)
 
 
 def watch(stream: io.StringIO, durations: list[float], steps: int, **others: Any) -> str:

@@ -12,7 +12,7 @@ import pytest
 
 from hofsi.counts import Counts
 from hofsi.observers.table import STEP_COLUMNS, QuantityTable, StepTable
-from hofsi.records import CouplingRecord, State, StepRecord
+from hofsi.records import CouplingRecord, Rejection, State, StepRecord
 
 
 def record(step: int, **others: Any) -> StepRecord:
@@ -62,7 +62,10 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         counts["fluid"].preconditioners = 1
         counts["fluid"].linear_iterations += 17
         mesh: Any = SimpleNamespace(regenerated=7, substeps=2, amplification=6.25, snapped=True)
-        table.observe(record(step, state=State(mesh=mesh), coupling=CouplingRecord(4, 1e-7, 2e-8), min_det_J=0.25))
+        rejected = (Rejection(0.4, "NewtonError", "."), Rejection(0.2, "NewtonError", "."))
+        others = {"local_error": 1e-5, "rejected": rejected if step == 2 else ()}
+        coupling = CouplingRecord(4, 1e-7, 2e-8)
+        table.observe(record(step, state=State(mesh=mesh), coupling=coupling, min_det_J=0.25, **others))
     table.close()
     assert (table.steps, table.coupling_iterations, table.blocks_regenerated) == (2, 8, 14)
     assert table.mesh_jumps == 2
@@ -84,6 +87,9 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         "assemblies": "2",
         "preconditioners": "1",
         "linear_iterations": "34",
+        "local_error": "1e-05",
+        "rejected": "2",
+        "rejected_because": "NewtonError",
         "seconds": "2.25",
     }
 
@@ -94,7 +100,7 @@ def test_what_a_problem_does_not_have_stays_empty(tmp_path: Path) -> None:
     table.close()
     (written,) = lines(tmp_path / "steps.csv")
     empty = [name for name, cell in written.items() if not cell]
-    assert empty == [*STEP_COLUMNS[3:10], "factorised_because"]
+    assert empty == [*STEP_COLUMNS[3:10], "factorised_because", "local_error", "rejected_because"]
     assert (table.coupling_iterations, table.blocks_regenerated) == (0, 0)
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from hofsi.solvers.fluid_state import FluidState
     from hofsi.solvers.solid import SolidState
 
-__all__ = ["CouplingRecord", "State", "StepRecord"]
+__all__ = ["CouplingRecord", "Rejection", "State", "StepRecord"]
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,25 @@ class CouplingRecord:
 
 
 @dataclass(frozen=True)
+class Rejection:
+    """An attempt at a step that was given up.
+
+    Attributes
+    ----------
+    dt : float
+        Its size.
+    error : str
+        The kind of error, ``"NewtonError"`` for example; ``"LocalError"`` for a step that was not accurate enough.
+    reason : str
+        What happened.
+    """
+
+    dt: float
+    error: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class StepRecord:
     """One finished step.
 
@@ -60,6 +79,12 @@ class StepRecord:
         None without coupling.
     min_det_J : float or None
         Certified lower bound of det J of the fluid mesh; None without a fluid.
+    done : float
+        Steps of the scene's ``dt`` that are behind: a whole number, unless a step was divided and more of it follows.
+    local_error : float or None
+        Estimate for this step, see `hofsi.timestepping.local_error`; None if there is none.
+    rejected : tuple of Rejection
+        Larger steps that were tried before this one, in that order.
     """
 
     step: int
@@ -68,3 +93,6 @@ class StepRecord:
     state: State
     coupling: CouplingRecord | None = None
     min_det_J: float | None = None
+    done: float = 0.0
+    local_error: float | None = None
+    rejected: tuple[Rejection, ...] = ()

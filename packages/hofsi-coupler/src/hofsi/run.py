@@ -20,6 +20,7 @@ from hofsi.errors import ConvergenceError
 from hofsi.io.summary import machine, versions, write_summary
 from hofsi.memory import keep_freed_memory
 from hofsi.notes import notes
+from hofsi.observers.divisions import DivisionWatch
 from hofsi.observers.observer import Observer
 from hofsi.observers.progress import Progress
 from hofsi.observers.quality import MeshQuality
@@ -159,6 +160,9 @@ class _Report:
         self._live = None if progress is None else Progress(progress, None if isinstance(time, Steady) else time.steps)
         if self._live is not None:
             self._observers.insert(0, ("tables", self._live))
+        self._divisions = None if isinstance(time, Steady) else DivisionWatch(time, self.note)
+        if self._divisions is not None:
+            self._observers.append(("tables", self._divisions))
         self._resolution: FlowResolutionWatch | None = None
         if problem.fluid is not None and problem.fluid.solver.convecting:
             from hofsi.observers.resolution import FlowResolutionWatch
@@ -245,6 +249,7 @@ class _Report:
             "seconds": self._seconds(),
             "counts": self._counts(),
             "t": None if self._last is None else self._last.time,
+            "time_steps": {} if self._divisions is None else self._divisions.summary(),
             "notes": list(self._notes),
             "quality": self._quality.summary(),
             "resolution": {} if self._resolution is None else self._resolution.summary(),

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hofsi import case
 from hofsi.build import Problem
-from hofsi.records import CouplingRecord, State, StepRecord
+from hofsi.errors import ConvergenceError
+from hofsi.fem.nodal_weights import nodal_weights
+from hofsi.records import CouplingRecord, Rejection, State, StepRecord
 from hofsi.threads import one_thread
+from hofsi.timestepping.control import StepControl
+from hofsi.timestepping.local_error import LocalErrors
 
 __all__ = ["simulate"]
+
+Array = NDArray[np.float64]
 
 _STEPS = 4  # step sizes remembered, for multi-step schemes and predictors
 
@@ -17,7 +26,8 @@ _STEPS = 4  # step sizes remembered, for multi-step schemes and predictors
 def simulate(problem: Problem) -> Iterator[StepRecord]:
     """Run a problem and yield every finished step; a steady problem yields one.
 
-    While a step is computed the BLAS works with one thread, see `hofsi.threads`.
+    A step that fails, or is not accurate enough if the case has a tolerance, is tried again with half its size. While a
+    step is computed the BLAS works with one thread, see `hofsi.threads`.
 
     Parameters
     ----------
@@ -32,7 +42,7 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
     Raises
     ------
     ConvergenceError
-        If a step does not succeed.
+        If a step does not succeed however small it is made.
     """
     times = problem.case.time
     alone = one_thread()
@@ -43,14 +53,66 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
         return
     state = problem.march.initial(times.start)
     sizes: list[float] = []
-    for step in range(1, times.steps + 1):
-        time, size = times.step(step)
-        sizes = [size, *sizes][:_STEPS]
-        with alone():
-            state, coupling = problem.march.step(state, sizes, time)
-        yield _record(step, time, size, state, coupling)
+    control = StepControl(times)
+    errors = None if times.tolerance is None else _local_errors(problem)
+    rejected: list[Rejection] = []
+    number = 1
+    while not control.finished:
+        time, size = control.time, control.size
+        steps = [size, *sizes][:_STEPS]
+        try:
+            with alone():
+                new, coupling = problem.march.step(state, steps, time)
+                error = None if errors is None else errors.estimate(_fields(new), steps)
+        except ConvergenceError as failure:
+            if control.halve(failed=True):
+                rejected.append(Rejection(size, type(failure).__name__, str(failure)))
+                continue
+            raise _given_up(failure, size, times) from failure
+        if error is not None and not control.suffices(error) and control.halve(failed=False):
+            rejected.append(Rejection(size, "LocalError", f"local error {error:.2g}, expected {times.tolerance:g}"))
+            continue
+        if errors is not None:
+            errors.keep(_fields(new))
+        yield _record(number, time, size, new, coupling, control.done, error, tuple(rejected))
+        control.advance(error)
+        state, sizes, rejected, number = new, steps, [], number + 1
 
 
-def _record(step: int, time: float, dt: float, state: State, coupling: CouplingRecord | None) -> StepRecord:
+def _record(
+    number: int,
+    time: float,
+    dt: float,
+    state: State,
+    coupling: CouplingRecord | None,
+    done: float = 1.0,
+    error: float | None = None,
+    rejected: tuple[Rejection, ...] = (),
+) -> StepRecord:
     bound = None if state.mesh is None else state.mesh.min_det_J
-    return StepRecord(step, time, dt, state, coupling, bound)
+    return StepRecord(number, time, dt, state, coupling, bound, done, error, rejected)
+
+
+def _given_up(failure: ConvergenceError, size: float, times: case.Unsteady) -> ConvergenceError:
+    """The error of the smallest step."""
+    if not times.halvings:
+        return failure
+    problem = (
+        f"{failure.problem} That was the smallest step, {size:.6g}: dt, halved time.halvings = {times.halvings} times."
+    )
+    return type(failure)(problem, failure.reason, failure.where)
+
+
+def _local_errors(problem: Problem) -> LocalErrors:
+    parts = {"fluid": problem.fluid, "solid": problem.solid}
+    return LocalErrors({name: nodal_weights(part.mesh) for name, part in parts.items() if part is not None})
+
+
+def _fields(state: State) -> dict[str, Array]:
+    """What the local error is measured in: the fluid's velocity and the solid's displacement."""
+    fields = {}
+    if state.fluid is not None:
+        fields["fluid"] = state.fluid.velocity
+    if state.solid is not None:
+        fields["solid"] = state.solid.displacement
+    return fields

@@ -23,7 +23,7 @@ class Steady:
 
 @dataclass(frozen=True)
 class Unsteady:
-    """Equal time steps, but for a last one that may be shorter to land on the end.
+    """Equal time steps, but for a last one that may be shorter to land on the end; they may be divided.
 
     Attributes
     ----------
@@ -33,12 +33,21 @@ class Unsteady:
         ``start + (steps - 1) dt < end <= start + steps dt`` but for rounding.
     steps : int
         At least 1.
+    halvings : int
+        How often a step may be halved, if it fails or its local error is too large.
+    tolerance : float or None
+        Of the local error of a step, relative to the largest velocity and displacement; None not to estimate it.
+    first : float or None
+        Largest size of the first steps, from ``dt / 2**halvings`` to ``dt``; None for ``dt``.
     """
 
     dt: float
     start: float
     end: float
     steps: int
+    halvings: int = 4
+    tolerance: float | None = None
+    first: float | None = None
 
     def step(self, number: int) -> tuple[float, float]:
         """End and size of a step, counted from 1."""

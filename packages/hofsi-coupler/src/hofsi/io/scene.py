@@ -39,7 +39,7 @@ _RIVALS = {
     "steps": ("end", "steady"),
     "end": ("steps", "steady"),
     "dt": ("steady",),
-    "steady": ("dt", "end", "steps", "start"),
+    "steady": ("dt", "end", "steps", "start", "tolerance", "halvings", "first"),
 }
 """Keys of ``[time]`` that exclude others."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 from hoblock.io.table import Table
 from hofsi.case import (
@@ -23,6 +24,15 @@ __all__ = ["read_coupling", "read_linear", "read_nonlinear", "read_output", "rea
 _WHOLE = 1e-6
 """How far (end - start)/dt may be from a whole number, in steps."""
 
+_HALVINGS = 10
+"""Of a step whose local error is too large."""
+
+_DEEPEST = 40
+"""Halvings that can be asked for: times keep a few digits beyond them."""
+
+_SMALL = 4
+"""Halvings of the first steps, for which there is no estimate of the error."""
+
 
 def read_time(table: Table) -> TimeSettings:
     """Read ``[time]``: ``steady = true``, or ``dt`` with ``end`` or ``steps``.
@@ -30,7 +40,7 @@ def read_time(table: Table) -> TimeSettings:
     Raises
     ------
     CaseError
-        Both or neither, an end before the start, or an interval that is no whole number of steps.
+        Both or neither, an end before the start, a step longer than the interval, or a first step out of range.
     """
     if table.boolean("steady", False):
         return _steady(table)
@@ -43,12 +53,29 @@ def read_time(table: Table) -> TimeSettings:
         raise CaseError(f"got {got}; expected exactly one of them", table.place)
     steps = table.integer("steps", None, minimum=1)
     time = _until_end(table, dt, start) if steps is None else Unsteady(dt, start, start + steps * dt, steps)
+    time = _divided(table, time)
     table.finish()
     return time
 
 
+def _divided(table: Table, time: Unsteady) -> Unsteady:
+    """Read how steps are divided: with a tolerance the first ones are small unless something else is given."""
+    tolerance = table.number("tolerance", None, above=0.0, below=1.0)
+    halvings = table.integer("halvings", time.halvings if tolerance is None else _HALVINGS, minimum=0, maximum=_DEEPEST)
+    first = table.number("first", None, positive=True)
+    if first is not None and not 2.0**-halvings * (1.0 - _WHOLE) <= first / time.dt <= 1.0 + _WHOLE:
+        raise CaseError(
+            f"got {first:g}; expected a step from {time.dt / 2**halvings:g}, which is dt halved 'halvings' = "
+            f"{halvings} times, to dt = {time.dt:g}",
+            table.place_of("first"),
+        )
+    if first is None and tolerance is not None:
+        first = time.dt / 2 ** min(halvings, _SMALL)
+    return replace(time, tolerance=tolerance, halvings=halvings, first=first)
+
+
 def _steady(table: Table) -> Steady:
-    for key in ("dt", "start", "end", "steps"):
+    for key in ("dt", "start", "end", "steps", "tolerance", "halvings", "first"):
         if table.has(key):
             raise CaseError("steady = true leaves no time; remove this key, or 'steady'", table.place_of(key))
     table.finish()

@@ -41,7 +41,7 @@ class FieldWriter:
     directory : path-like
         Made if it does not exist.
     every : int
-        Steps between files.
+        Steps of the scene's ``dt`` between files; their parts do not count.
 
     Raises
     ------
@@ -63,7 +63,7 @@ class FieldWriter:
 
     def observe(self, record: StepRecord) -> None:
         """Write a finished step if its turn has come; otherwise remember it, it may be the last one."""
-        if record.step % self._every:
+        if record.done % self._every:
             self._waiting = record
         else:
             self._write(record)

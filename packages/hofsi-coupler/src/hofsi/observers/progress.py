@@ -25,7 +25,7 @@ class Progress:
     stream : text file
         Usually the standard error output.
     steps : int or None
-        How many there will be; None for a steady problem.
+        How many of the scene's ``dt`` there will be; None for a steady problem.
     interval : float
         Seconds between lines where the stream is no terminal.
     clock : callable
@@ -40,18 +40,20 @@ class Progress:
         self._interval = _TTY_INTERVAL if self._terminal else interval
         self._last_step = clock()
         self._last_line = -float("inf")
-        self._duration: float | None = None
+        self._duration: float | None = None  # of a step of the scene's dt
+        self._done = 0.0
         self._pending = ""
         self._shown = False
 
     def observe(self, record: StepRecord) -> None:
         """Note a step, and show it if it is time to."""
         now = self._clock()
-        took, self._last_step = now - self._last_step, now
+        part, self._done = record.done - self._done, record.done
+        took, self._last_step = (now - self._last_step) / (part or 1.0), now
         if self._duration is None:
             self._duration = took
         else:  # a plain mean at first, then one that forgets
-            weight = max(_SMOOTHING, 1.0 / max(record.step, 1))
+            weight = min(1.0, part) * max(_SMOOTHING, 1.0 / max(record.done, 1.0))
             self._duration += weight * (took - self._duration)
         self._pending = self._line(record)
         if now - self._last_line >= self._interval:
@@ -84,7 +86,7 @@ class Progress:
     def _line(self, record: StepRecord) -> str:
         if record.dt > 0.0:
             of = "" if self._steps is None else f"/{self._steps}"
-            parts = [f"step {record.step}{of}", f"t {record.time:.6g}", f"dt {record.dt:.3g}"]
+            parts = [f"step {_count(record.done)}{of}", f"t {record.time:.6g}", f"dt {record.dt:.3g}"]
         else:
             parts = ["steady state"]
         if record.coupling is not None:
@@ -95,8 +97,13 @@ class Progress:
         if record.state.mesh is not None and record.state.mesh.snapped:
             parts.append(f"mesh jumped? (vertices move {record.state.mesh.amplification:.2g} times as far as the body)")
         if record.dt > 0.0 and self._steps is not None and self._duration is not None:
-            parts.append(f"{_span(self._duration * max(self._steps - record.step, 0))} left")
+            parts.append(f"{_span(self._duration * max(self._steps - record.done, 0.0))} left")
         return "  ".join(parts)
+
+
+def _count(steps: float) -> str:
+    """A number of steps: "12", or "12.38" within a divided one."""
+    return f"{steps:.0f}" if steps == round(steps) else f"{steps:.2f}"
 
 
 def _span(seconds: float) -> str:

@@ -33,6 +33,9 @@ STEP_COLUMNS = (
     "assemblies",
     "preconditioners",
     "linear_iterations",
+    "local_error",
+    "rejected",
+    "rejected_because",
     "seconds",
 )
 """Columns of ``steps.csv``; those that a problem does not have stay empty."""
@@ -163,6 +166,9 @@ class StepTable:
                 sum(count.factorisations for count in self._counts.values()),
                 self._because(),
                 *(sum(getattr(count, name) for count in self._counts.values()) for name in _COUNTED),
+                record.local_error,
+                len(record.rejected),
+                ", ".join(dict.fromkeys(rejection.error for rejection in record.rejected)) or None,
                 round(self._clock() - self._opened, 4),
             )
         )

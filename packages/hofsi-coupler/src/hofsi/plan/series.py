@@ -23,8 +23,21 @@ def time_items(case: Case) -> Iterator[Item]:
             f"{counted(time.steps, 'step')} of {time.dt:g}{shorter} from {time.start:g} to {time.end:g}, "
             f"backward differences of {order}",
         )
+        if time.halvings:
+            yield Item("smaller steps", _divisions(time))
     else:
         yield Item("time", "steady")
+
+
+def _divisions(time: Unsteady) -> str:
+    smallest = f"down to {time.dt / 2**time.halvings:.3g}"
+    if time.tolerance is None:
+        first = "" if time.first is None else f"the first of at most {time.first:g}; "
+        return f"{first}halved where a step fails, {smallest}"
+    return (
+        f"the first of at most {time.first:g}; halved where the local error of a step is more than {time.tolerance:g} "
+        f"of the largest velocity or displacement, or a step fails, {smallest}"
+    )
 
 
 def output_items(case: Case) -> Iterator[Item]:

@@ -52,6 +52,8 @@ def _without_motion(case: Case) -> Iterator[Item]:
 def _once(case: Case) -> str:
     """How often something is done that depends on nothing but the coefficients of the time scheme."""
     several = isinstance(case.time, Unsteady) and case.time.steps > 1
+    if isinstance(case.time, Unsteady) and (case.time.tolerance is not None or case.time.first is not None):
+        return "for each change of the step size"
     return "twice, for the first step and the others" if several else "once"
 
 
