@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hoblock.errors import LocationError
 from hoblock.mesh import QuadMesh
 from hoblock.numbering import corner_nodes
-from hoblock.reference import gauss_lobatto, tensor_basis, tensor_gradient
+from hoblock.reference import differentiation_matrix, gauss_lobatto, lagrange, tensor_basis
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -268,31 +268,47 @@ def _solve_from_anywhere(mesh: QuadMesh, elements: Index, x: Array) -> _Solution
 
 
 def _solve(mesh: QuadMesh, elements: Index, x: Array, xi: Array) -> _Solutions:
-    """Solve x(ξ, η) = x by Newton's method; where the element map cannot be inverted the distance is infinite."""
+    """Solve x(ξ, η) = x by Newton's method; where the element map cannot be inverted the distance is infinite.
+
+    What is sent beyond the limits of an element's map twice in a row will not come back.
+    """
     if not len(x):
         return _Solutions(xi.copy(), np.zeros(0, dtype=bool), np.zeros(0))
     X, nodes = mesh.points[mesh.cells[elements]], gauss_lobatto(mesh.order)
-    xi, singular = xi.copy(), np.zeros(len(x), dtype=bool)
+    D = differentiation_matrix(nodes)
+    xi, singular, away = xi.copy(), np.zeros(len(x), dtype=bool), np.zeros(len(x), dtype=bool)
     active = np.arange(len(x))
     for _ in range(_ITERATIONS):
         if not active.size:
             break
-        missing = x[active] - _positions(nodes, xi[active], X[active])
-        J = np.swapaxes(X[active], 1, 2) @ tensor_gradient(nodes, xi[active])
+        position, J = _map(nodes, D, xi[active], X[active])
+        missing = x[active] - position
         det_J = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
         flat = ~(np.abs(det_J) > 1e-14 * np.abs(J).max(axis=(1, 2)) ** 2)
         singular[active[flat]] = True
         adjugate = np.stack([J[:, 1, 1], -J[:, 0, 1], -J[:, 1, 0], J[:, 0, 0]], axis=-1).reshape(-1, 2, 2)
         step = (adjugate @ missing[:, :, None])[:, :, 0] / np.where(flat, 1.0, det_J)[:, None]
         step[flat] = 0.0
-        xi[active] = np.clip(xi[active] + step, -_FAR, _FAR)
-        active = active[~(np.abs(step).max(axis=1) < _CONVERGED)]
+        target = xi[active] + step
+        far = np.abs(target).max(axis=1) > _FAR
+        xi[active] = np.clip(target, -_FAR, _FAR)
+        done = (np.abs(step).max(axis=1) < _CONVERGED) | (far & away[active])
+        away[active] = far
+        active = active[~done]
     clipped = np.clip(xi, -1.0, 1.0)
-    distance = np.hypot(*(x - _positions(nodes, clipped, X)).T)
+    distance = np.hypot(*(x - _map(nodes, D, clipped, X)[0]).T)
     size = np.ptp(X, axis=1).max(axis=1)
     inside = (np.abs(xi).max(axis=1) <= 1.0 + _INSIDE) & (distance <= _MISSED * size) & ~singular
     return _Solutions(clipped, inside, np.where(singular, np.inf, distance))
 
 
-def _positions(nodes: Array, xi: Array, X: Array) -> Array:
-    return np.asarray((tensor_basis(nodes, xi)[:, None, :] @ X)[:, 0, :])
+def _map(nodes: Array, D: Array, xi: Array, X: Array) -> tuple[Array, Array]:
+    """Positions (k, 2) and Jacobians ∂x_d/∂ξ_c, shape (k, d, c), of element maps X (k, n, 2), each at its (ξ, η)."""
+    count = len(nodes)
+    both = lagrange(nodes, xi.ravel()).reshape(len(xi), 2, count)
+    slopes = both @ D
+    along_eta = np.stack([both[:, 1], slopes[:, 1]], axis=1)  # of the value and its derivative
+    along_xi = np.stack([both[:, 0], slopes[:, 0]], axis=1)
+    rows = (along_eta @ X.reshape(len(X), count, 2 * count)).reshape(len(X), 2, count, 2)
+    x = along_xi[:, None] @ rows  # (k, η: value or slope, ξ: value or slope, d)
+    return x[:, 0, 0], np.stack([x[:, 0, 1], x[:, 1, 0]], axis=-1)
