@@ -56,7 +56,7 @@ LATE = {
     "an initial velocity beyond all numbers": (
         [(VISCOSITY, f'{VISCOSITY}\ninitial_velocity = ["1e200*y", 0]')],
         3,
-        "not finite",
+        "check the given velocities",
     ),
     "steps that few iterations do not reach": (
         [

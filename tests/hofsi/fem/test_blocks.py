@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hofsi.errors import LinearSolverError
-from hofsi.fem.blocks import BlockFactors, BlockInverses, block_solver
+from hofsi.fem.blocks import BlockFactors, BlockInverses, block_solver, joined
 
 
 def matrices(count, rows):
@@ -39,3 +39,17 @@ def test_a_singular_block_is_an_error(kind):
     B[1, :, 2] = 0.0
     with pytest.raises(LinearSolverError, match="inner unknowns is singular"):
         kind(B)
+
+
+@pytest.mark.parametrize("n", [4, 120])
+def test_batches_of_solvers_are_joined(n):
+    rng = np.random.default_rng(3)
+    B, R = rng.standard_normal((5, n, n)), rng.standard_normal((5, n, 2))
+    solver = joined([block_solver(B[:2]), block_solver(B[2:4]), block_solver(B[4:])])
+    np.testing.assert_allclose(B @ solver.solve(R), R, atol=1e-9)
+
+
+@pytest.mark.parametrize("largest", [1e200, np.inf])
+def test_a_flow_that_diverged_is_told_from_a_singular_matrix(largest):
+    with pytest.raises(LinearSolverError, match="has diverged"):
+        block_solver(np.full((2, 4, 4), largest))

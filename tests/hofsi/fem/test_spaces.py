@@ -91,14 +91,21 @@ def test_blocks_act_on_their_fields(order):
             rows = np.concatenate([np.arange(k)[part_] for part_ in space.rows(row)])
             np.testing.assert_allclose(y[:, rows], expected, rtol=0.0, atol=1e-12)
             assert not np.delete(y, rows, axis=1).any()
-            twice = A.copy()
-            space.add(twice, row, column, block)
-            np.testing.assert_allclose(twice, 2.0 * A, rtol=0.0, atol=1e-12)
-            some = A.copy()
-            space.add(some, row, column, block[[1, 1, 0]], np.array([1, 1, 0]))  # an element may occur twice
-            np.testing.assert_allclose(some[1], 3.0 * A[1], rtol=0.0, atol=1e-12)
-            np.testing.assert_allclose(some[0], 2.0 * A[0], rtol=0.0, atol=1e-12)
-            np.testing.assert_array_equal(some[2:], A[2:])
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_saddle_point_matrices_are_made_of_their_blocks(order):
+    space = TaylorHood.on(star(order))
+    rng = np.random.default_rng(31)
+    e, n, m = len(space.dofs), space.velocity_cells.shape[1], space.pressure_cells.shape[1]
+    velocity, divergence = rng.standard_normal((2, 2, e, n, n)), rng.standard_normal((2, e, m, n))
+    expected = np.zeros((e, space.dofs.shape[1], space.dofs.shape[1]))
+    for a in range(2):
+        for b in range(2):
+            space.put(expected, a, b, velocity[a, b])
+        space.put(expected, 2, a, divergence[a])
+        space.put(expected, a, 2, divergence[a].transpose(0, 2, 1))
+    np.testing.assert_array_equal(space.matrices(velocity, divergence), expected)
 
 
 def test_local_vectors_hold_the_velocity_and_no_pressure():

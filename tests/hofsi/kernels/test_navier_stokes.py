@@ -129,7 +129,7 @@ def test_convection(peers):
 
 
 def test_newtons_term(peers):
-    gradient = kernel.velocity_gradient(peers.dNx, peers.dNy, peers.u[peers.mesh.cells])
+    gradient = kernel.velocity_gradient(peers.table.dN, peers.geometry.J_inv, peers.u[peers.mesh.cells])
     blocks = peers.reaction(2.0, gradient)
     peers.same(peers.ours(blocks), peers.theirs(lambda u, v, w: 2.0 * dot(mul(grad(w["u"]), u), v), u=peers.u))
 
@@ -140,7 +140,7 @@ def test_convection_and_newtons_term_are_the_derivative_of_convection(peers):
         zero = np.zeros_like(block)
         return peers.ours((block, zero, zero, block))
 
-    gradient = kernel.velocity_gradient(peers.dNx, peers.dNy, peers.u[peers.mesh.cells])
+    gradient = kernel.velocity_gradient(peers.table.dN, peers.geometry.J_inv, peers.u[peers.mesh.cells])
     newton = peers.ours(peers.reaction(2.0, gradient))
     # Convection is quadratic: c(u + d) - c(u - d) = 2 c'(u) d without remainder.
     d = peers.a
@@ -174,5 +174,24 @@ def test_load(peers):
 def test_velocity_gradient_of_a_linear_field(peers):
     G = np.array([[0.3, -1.2], [2.1, 0.4]])  # ∂_b u_a
     u = peers.mesh.points @ G.T
-    gradient = kernel.velocity_gradient(peers.dNx, peers.dNy, u[peers.mesh.cells])
-    np.testing.assert_allclose(gradient, np.broadcast_to(G, gradient.shape), rtol=0.0, atol=1e-12)
+    gradient = kernel.velocity_gradient(peers.table.dN, peers.geometry.J_inv, u[peers.mesh.cells])
+    assert gradient.shape == (2, 2, len(peers.mesh.cells), COUNT**2)
+    np.testing.assert_allclose(gradient, np.broadcast_to(G[:, :, None, None], gradient.shape), rtol=0.0, atol=1e-12)
+
+
+def test_advection_is_that_of_the_convection_matrix(peers):
+    gradient = kernel.velocity_gradient(peers.table.dN, peers.geometry.J_inv, peers.u[peers.mesh.cells])
+    density = 2.0 * kernel.advection(gradient, peers.table.N @ peers.a[peers.mesh.cells])
+    local = kernel.load(peers.table.N, peers.geometry.weights, density)
+    by_matrix = peers.convection(2.0, peers.a) @ peers.u[peers.mesh.cells]
+    np.testing.assert_allclose(local, by_matrix, rtol=0.0, atol=1e-12)
+
+
+def test_work_of_a_viscous_stress_is_that_of_the_viscous_matrix(peers):
+    gradient = kernel.velocity_gradient(peers.table.dN, peers.geometry.J_inv, peers.u[peers.mesh.cells])
+    stress = 0.7 * (gradient + gradient.swapaxes(0, 1))
+    local = kernel.stress_work(peers.table.dN, peers.geometry.J_inv, peers.geometry.weights, stress)
+    ours = np.zeros(peers.mesh.points.shape)
+    np.add.at(ours, peers.mesh.cells, local)
+    theirs = peers.theirs(lambda u, v, w: 2.0 * 0.7 * ddot(sym_grad(u), sym_grad(v)))
+    peers.same(ours.ravel(), theirs @ peers.u.ravel())

@@ -156,7 +156,7 @@ class Flows:
     def pressure_error(solver, state, text, *, level=False):
         """Largest error of the pressure at quadrature points; with ``level`` the exact mean is removed first."""
         space = solver.space
-        geometry = solver.geometry(state.points[0])[0]
+        geometry = solver.geometry(state.points[0])
         computed = state.pressure[space.pressure_cells] @ space.pressure.N.T
         exact = Flows.expression(text).evaluate(x=geometry.x[..., 0], y=geometry.x[..., 1], t=state.time)
         if level:
@@ -167,7 +167,7 @@ class Flows:
     def velocity_norm_of_error(solver, state, x, y):
         """L² norm of the velocity's error."""
         space = solver.space
-        geometry = solver.geometry(state.points[0])[0]
+        geometry = solver.geometry(state.points[0])
         exact = Flows.field(geometry.x.reshape(-1, 2), x, y, state.time).reshape(geometry.x.shape)
         error = space.velocity.N @ state.velocity[space.velocity_cells] - exact
         return float(np.sqrt(np.sum(geometry.weights[..., None] * error**2)))
@@ -176,7 +176,7 @@ class Flows:
     def pressure_norm_of_error(solver, state, text):
         """L² norm of the pressure's error, both with zero mean."""
         space = solver.space
-        geometry = solver.geometry(state.points[0])[0]
+        geometry = solver.geometry(state.points[0])
         w = geometry.weights
         exact = Flows.expression(text).evaluate(x=geometry.x[..., 0], y=geometry.x[..., 1], t=state.time)
         error = state.pressure[space.pressure_cells] @ space.pressure.N.T - exact

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -13,10 +14,14 @@ from hofsi.errors import LinearSolverError
 Array = NDArray[np.float64]
 Index = NDArray[np.int32]
 
-__all__ = ["BlockFactors", "BlockInverses", "BlockSolver", "block_solver"]
+__all__ = ["BlockFactors", "BlockInverses", "BlockSolver", "block_solver", "joined"]
 
 _LARGE = 90
 """Rows from which factors, made block by block, take less time than inverses of all blocks at once."""
+
+
+_ABSURD = 1e100
+"""Entries that no units explain."""
 
 
 class BlockSolver(Protocol):
@@ -38,6 +43,15 @@ def block_solver(B: Array) -> BlockSolver:
     return BlockFactors(B) if B.shape[1] >= _LARGE else BlockInverses(B)
 
 
+def joined(solvers: Sequence[BlockSolver]) -> BlockSolver:
+    """What solves with the matrices of several batches, made by `block_solver`, one after the other."""
+    if len(solvers) == 1:
+        return solvers[0]
+    if isinstance(solvers[0], BlockInverses):
+        return BlockInverses.joined([solver for solver in solvers if isinstance(solver, BlockInverses)])
+    return BlockFactors.joined([solver for solver in solvers if isinstance(solver, BlockFactors)])
+
+
 class BlockInverses:
     """Inverses of matrices of shape (e, n, n)."""
 
@@ -45,7 +59,14 @@ class BlockInverses:
         try:
             self._inverses = np.linalg.inv(B)
         except np.linalg.LinAlgError as error:
-            raise _singular() from error
+            raise _failure(B) from error
+
+    @staticmethod
+    def joined(parts: Sequence[BlockInverses]) -> BlockInverses:
+        """Inverses of several batches."""
+        result = BlockInverses.__new__(BlockInverses)
+        result._inverses = np.concatenate([part._inverses for part in parts])
+        return result
 
     def solve(self, R: Array) -> Array:
         """Solve B X = R for each block, shapes (e, n, k)."""
@@ -61,8 +82,15 @@ class BlockFactors:
             # LAPACK reads columns: what it sees of an array of rows is the transpose.
             lu, pivots, info = lapack.dgetrf(block.T)
             if info:
-                raise _singular()
+                raise _failure(block)
             self._factors.append((lu, pivots))
+
+    @staticmethod
+    def joined(parts: Sequence[BlockFactors]) -> BlockFactors:
+        """Factors of several batches."""
+        result = BlockFactors.__new__(BlockFactors)
+        result._factors = [factor for part in parts for factor in part._factors]
+        return result
 
     def solve(self, R: Array) -> Array:
         """Solve B X = R for each block, shapes (e, n, k)."""
@@ -72,5 +100,13 @@ class BlockFactors:
         return X
 
 
-def _singular() -> LinearSolverError:
-    return LinearSolverError("the matrix of an element's inner unknowns is singular.")
+def _failure(B: Array) -> LinearSolverError:
+    """Why matrices cannot be solved with."""
+    largest = float(np.abs(B).max())
+    if largest < _ABSURD:
+        return LinearSolverError("the matrix of an element's inner unknowns is singular.", "singular")
+    return LinearSolverError(
+        f"the matrix of an element's inner unknowns has entries of {largest:.2g}: the flow has diverged. Lower the time "
+        "step or the Reynolds number, or check the given velocities.",
+        "diverged",
+    )

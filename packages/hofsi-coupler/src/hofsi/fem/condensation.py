@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
@@ -11,8 +12,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from hofsi.fem.assembly import MatrixPattern, assemble_vector
-from hofsi.fem.blocks import BlockSolver, block_solver
+from hofsi.fem.blocks import BlockSolver, block_solver, joined
 from hofsi.fem.constraints import NodeConstraints
+from hofsi.fem.element_matrices import ElementMatrices, batches, maker
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.direct import DirectFactor
 from hofsi.linear.lagged import LaggedSolver
@@ -22,7 +24,29 @@ from hofsi.linear.solver import Solver
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["CondensedFactor", "CondensedSystem"]
+__all__ = ["CondensedFactor", "CondensedMatrices", "CondensedSystem"]
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedMatrices:
+    """Element matrices without their inner unknowns, and what finds these again.
+
+    Attributes
+    ----------
+    S : ndarray, shape (e, boundary, boundary)
+        In the nodes' own frames.
+    coupling : ndarray, shape (e, boundary, inner)
+        The blocks beside those of the inner unknowns.
+    inner : BlockSolver or None
+        Solves with the matrices of the inner unknowns; None if there are none.
+    X : ndarray, shape (e, inner, boundary)
+        Its solutions for the blocks below.
+    """
+
+    S: Array
+    coupling: Array
+    inner: BlockSolver | None
+    X: Array
 
 
 class CondensedSystem:
@@ -115,23 +139,24 @@ class CondensedSystem:
         """Make what can be known before the numbers, which the first factorisation would otherwise make."""
         _ = self.pattern if self._tree is None else self._tree
 
-    def factorise(self, A: Array, *, tolerance: float | None = None) -> CondensedFactor:
+    def factorise(self, A: ElementMatrices, *, tolerance: float | None = None) -> CondensedFactor:
         """Condense and factorise element matrices.
 
         Parameters
         ----------
-        A : ndarray, shape (e, k, k)
+        A : ndarray, shape (e, k, k), or callable
+            All of them, or what makes some.
         tolerance : float, optional
             For iterative solvers: a residual, relative to the right-hand side, that is small enough.
         """
         return self._solved(A, self._factorised)
 
-    def lagged(self, A: Array, factor: CheckedSolver, goal: float, limit: int) -> CondensedFactor:
-        """Condense element matrices A of shape (e, k, k) and solve with the factors of an earlier condensed matrix.
+    def lagged(self, A: ElementMatrices, factor: CheckedSolver, goal: float, limit: int) -> CondensedFactor:
+        """Condense element matrices and solve with the factors of an earlier condensed matrix.
 
         Parameters
         ----------
-        A : ndarray, shape (e, k, k)
+        A : ndarray, shape (e, k, k), or callable
         factor : CheckedSolver
             ``factor`` of a `CondensedFactor` of the same unknowns.
         goal, limit
@@ -150,10 +175,10 @@ class CondensedSystem:
             return DirectFactor(self.pattern.matrix(S))
         return multifrontal_solver(self._tree, S, lambda: self.pattern.matrix(S))
 
-    def _solved(self, A: Array, solver: Callable[[Array], Solver]) -> CondensedFactor:
+    def _solved(self, A: ElementMatrices, solver: Callable[[Array], Solver]) -> CondensedFactor:
         """Condense, and let a solver of condensed element matrices do the rest."""
-        S, inner, X = self.condensed(A)
-        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inner, X, solver(S))
+        condensed = self.condensed(A)
+        return CondensedFactor(self, condensed, solver(condensed.S))
 
     def _product(self, S: Array, x: Array) -> Array:
         """Condensed element matrices times a vector of the free unknowns."""
@@ -171,34 +196,27 @@ class CondensedSystem:
             return None
         return EliminationTree(self.skeleton, len(self.unknowns), self._places)
 
-    def matrix(self, A: Array) -> sp.csc_matrix:
+    def matrix(self, A: ElementMatrices) -> sp.csc_matrix:
         """Return the condensed matrix of element matrices (e, k, k), in the nodes' own frames."""
-        return self.pattern.matrix(self.condensed(A)[0])
+        return self.pattern.matrix(self.condensed(A).S)
 
-    def condensed(self, A: Array) -> tuple[Array, BlockSolver | None, Array | None]:
-        """Condense element matrices (e, k, k).
-
-        Returns
-        -------
-        S : ndarray, shape (e, boundary, boundary)
-            In the nodes' own frames.
-        inner : BlockSolver or None
-            Solves with the matrices of the inner unknowns; None if there are none.
-        X : ndarray, shape (e, inner, boundary), or None
-            Its solutions for the blocks beside it.
-        """
-        b = self.boundary
-        S = A[:, :b, :b]
-        inner: BlockSolver | None = None
-        X: Array | None = None
-        if self.inner:
-            inner = block_solver(A[:, b:, b:])
-            X = inner.solve(A[:, b:, :b])
-            S = S - A[:, :b, b:] @ X
+    def condensed(self, A: ElementMatrices) -> CondensedMatrices:
+        """Condense element matrices, all of them (e, k, k) or what makes some, batch by batch."""
+        count, width, b, make = len(self.dofs), self.dofs.shape[1], self.boundary, maker(A)
+        S, coupling = np.empty((count, b, b)), np.empty((count, b, self.inner))
+        X = np.empty((count, self.inner, b))
+        solvers = []
+        for batch in batches(count, width):
+            part = make(batch)
+            S[batch] = part[:, :b, :b]
+            if self.inner:
+                coupling[batch] = part[:, :b, b:]
+                solvers.append(block_solver(part[:, b:, b:]))
+                X[batch] = solvers[-1].solve(part[:, b:, :b])
+                S[batch] -= coupling[batch] @ X[batch]
         if self._rotated.size:
-            S = S.copy()
             S[self._rotated] = self._rotation.transpose(0, 2, 1) @ S[self._rotated] @ self._rotation
-        return S, inner, X
+        return CondensedMatrices(S, coupling, joined(solvers) if solvers else None, X)
 
     def rotate_back(self, x: Array) -> Array:
         """Element vectors (e, boundary) from the nodes' own frames to x and y."""
@@ -216,11 +234,9 @@ class CondensedSystem:
 class CondensedFactor:
     """A factorised condensed system; made by `CondensedSystem.factorise`."""
 
-    def __init__(
-        self, system: CondensedSystem, coupling: Array, inner: BlockSolver | None, X: Array | None, factor: Solver
-    ) -> None:
+    def __init__(self, system: CondensedSystem, condensed: CondensedMatrices, factor: Solver) -> None:
         self.system, self.factor = system, factor
-        self._coupling, self._inner, self._X = coupling, inner, X
+        self._coupling, self._inner, self._X = condensed.coupling, condensed.inner, condensed.X
 
     def solve(self, r: Array) -> Array:
         """Solve for all unknowns.
@@ -248,6 +264,6 @@ class CondensedFactor:
         x_b = system.rotate_back(padded[skeleton])
         x = np.zeros(system.size)
         x[system.dofs[:, :b]] = x_b
-        if self._X is not None and z is not None:
+        if z is not None:
             x[system.dofs[:, b:]] = z - (self._X @ x_b[:, :, None])[:, :, 0]
         return x

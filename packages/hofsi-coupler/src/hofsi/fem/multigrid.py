@@ -12,11 +12,11 @@ from hoblock.numbering import side_nodes
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.fem.element import boundary_first
+from hofsi.fem.element_matrices import ElementMatrices
 from hofsi.fem.nesting import Nesting, nested
 from hofsi.fem.spaces import TaylorHood
 from hofsi.fem.transfer import Transfer, coarse_constraints
 from hofsi.linear.patches import PatchSmoother
-from hofsi.linear.solver import Solver
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -147,8 +147,8 @@ class GridCycle:
     ----------
     levels : sequence of GridLevel
         This one first; at least two.
-    A : ndarray, shape (e, k, k)
-        Element matrices.
+    A : ndarray, shape (e, k, k), or callable
+        Element matrices, or what makes them.
     S : ndarray, shape (e, b, b)
         The same after condensation.
 
@@ -166,7 +166,7 @@ class GridCycle:
     doi:10.1002/1097-0363(20000630)33:4<453::AID-FLD15>3.0.CO;2-0.
     """
 
-    def __init__(self, levels: tuple[GridLevel, ...], A: Array, S: Array) -> None:
+    def __init__(self, levels: tuple[GridLevel, ...], A: ElementMatrices, S: Array) -> None:
         level = levels[0]
         assert level.transfer is not None
         self._system, self._transfer, self._share = level.system, level.transfer, level.share
@@ -200,7 +200,5 @@ def _factor(levels: tuple[GridLevel, ...], A: Array) -> CondensedFactor:
     system = levels[0].system
     if levels[0].transfer is None:
         return system.factorise(A)
-    S, inverse, X = system.condensed(A)
-    coupling = np.ascontiguousarray(A[:, : system.boundary, system.boundary :])
-    cycle: Solver = GridCycle(levels, A, S)
-    return CondensedFactor(system, coupling, inverse, X, cycle)
+    condensed = system.condensed(A)
+    return CondensedFactor(system, condensed, GridCycle(levels, A, condensed.S))

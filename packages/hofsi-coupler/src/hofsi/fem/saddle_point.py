@@ -12,6 +12,7 @@ from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
+from hofsi.fem.element_matrices import ElementMatrices
 from hofsi.fem.multigrid import GridCycle, GridLevel, grid_levels
 from hofsi.fem.spaces import TaylorHood
 from hofsi.linear.krylov import flexible_gmres
@@ -79,25 +80,23 @@ class SaddlePointSystem(CondensedSystem):
             _ = level.system.pattern
         self.levels[-1].system.prepare()
 
-    def factorise(self, A: Array, *, tolerance: float | None = None) -> CondensedFactor:
+    def factorise(self, A: ElementMatrices, *, tolerance: float | None = None) -> CondensedFactor:
         """Condense element matrices and prepare their solution.
 
         Parameters
         ----------
-        A : ndarray, shape (e, k, k)
+        A : ndarray, shape (e, k, k), or callable
             Kept, not copied.
         tolerance : float, optional
             If the residual need not be smaller; by default that of the system.
         """
-        S, inverse, X = self.condensed(A)
-        factor: Solver
         if self.levels[0].transfer is None:
-            factor = self._factorised(S)
-        else:
-            factor = _Iteration(self, A, S, max(self.tolerance, tolerance or 0.0))
-        return CondensedFactor(self, A[:, : self.boundary, self.boundary :], inverse, X, factor)
+            return super().factorise(A)
+        condensed = self.condensed(A)
+        tolerance = max(self.tolerance, tolerance or 0.0)
+        return CondensedFactor(self, condensed, _Iteration(self, A, condensed.S, tolerance))
 
-    def preconditioner(self, A: Array, S: Array, *, renew: bool = False) -> tuple[Solver, bool]:
+    def preconditioner(self, A: ElementMatrices, S: Array, *, renew: bool = False) -> tuple[Solver, bool]:
         """The preconditioner that is kept, or a new one; and which it is."""
         if self._cycle is not None and not renew and self._pays():
             return self._cycle, False
@@ -134,7 +133,7 @@ class _Iteration:
         Of the last solution.
     """
 
-    def __init__(self, system: SaddlePointSystem, A: Array, S: Array, tolerance: float) -> None:
+    def __init__(self, system: SaddlePointSystem, A: ElementMatrices, S: Array, tolerance: float) -> None:
         self._system, self._A, self._S, self._tolerance = system, A, S, tolerance
         self.iterations = 0
 

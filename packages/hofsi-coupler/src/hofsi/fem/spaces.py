@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -136,28 +137,35 @@ class TaylorHood:
         """Local nodes of a field (0 and 1 velocity, 2 pressure) on the element's boundary."""
         return self.pressure_boundary if field == 2 else self.velocity_boundary
 
+    def matrices(self, velocity: Array, divergence: Array) -> Array:
+        """Element matrices of a saddle point in local order, shape (m, k, k), with zeros for two pressures.
+
+        Parameters
+        ----------
+        velocity : ndarray, shape (2, 2, m, n, n)
+            Blocks of the velocity's components.
+        divergence : ndarray, shape (2, m, k, n)
+            Blocks of a pressure and each component; the transposed ones are theirs.
+        """
+        width = self.dofs.shape[1]
+        A = np.zeros((velocity.shape[2], width, width))
+        for a in range(2):
+            for b in range(2):
+                self.put(A, a, b, velocity[a, b])
+            self.put(A, 2, a, divergence[a])
+            self.put(A, a, 2, divergence[a].transpose(0, 2, 1))
+        return A
+
     def put(self, A: Array, row: int, column: int, block: Array) -> None:
         """Write the block of a pair of fields into element matrices in local order."""
-        for rows, first in zip(
-            self.rows(row), (slice(None, self.on_boundary(row)), slice(self.on_boundary(row), None)), strict=True
-        ):
-            for columns, second in zip(
-                self.rows(column),
-                (slice(None, self.on_boundary(column)), slice(self.on_boundary(column), None)),
-                strict=True,
-            ):
+        for rows, first in self._halves(row):
+            for columns, second in self._halves(column):
                 A[:, rows, columns] = block[:, first, second]
 
-    def add(self, A: Array, row: int, column: int, block: Array, elements: Index | slice = slice(None)) -> None:
-        """Add a block to the element matrices of some elements."""
-        b, c = self.on_boundary(row), self.on_boundary(column)
-        rows, columns = self.rows(row), self.rows(column)
-        for r, first in zip(rows, (slice(None, b), slice(b, None)), strict=True):
-            for s, second in zip(columns, (slice(None, c), slice(c, None)), strict=True):
-                if isinstance(elements, slice):
-                    A[:, r, s] += block[:, first, second]
-                else:
-                    np.add.at(A[:, r, s], elements, block[:, first, second])
+    def _halves(self, field: int) -> Iterator[tuple[slice, slice]]:
+        """Rows of a field on the boundary and inside, in an element's matrix and in a block."""
+        b = self.on_boundary(field)
+        yield from zip(self.rows(field), (slice(None, b), slice(b, None)), strict=True)
 
     def local_vector(self, velocity: Array) -> Array:
         """Element vectors (e, 2n + m) from nodal vectors (e, n, 2); zero for the pressure."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hoblock.reference import gauss_lobatto, lagrange
 from hofsi.fem.constraints import DirectedNodes, NodeConstraints
 from hofsi.fem.element import boundary_first
+from hofsi.fem.element_matrices import ElementMatrices, batches, maker
 from hofsi.fem.nesting import Nesting
 from hofsi.fem.spaces import TaylorHood
 
@@ -68,13 +69,18 @@ class Transfer:
             P = _interpolation(fine, part, turn)
             self.kinds.append(_Kind(elements, nesting.parent[elements], part, turn, P))
 
-    def matrices(self, A: Array) -> Array:
-        """Galerkin's matrices Pᵀ A P of the coarse elements, from those of the fine ones (e, k, k)."""
-        k = A.shape[1]
-        result = np.zeros((len(self.coarse.dofs), k, k))
-        for kind in self.kinds:
-            product = (A[kind.elements].reshape(-1, k) @ kind.interpolation).reshape(-1, k, k)
-            result[kind.parents] += kind.interpolation.T @ product
+    def matrices(self, A: ElementMatrices) -> Array:
+        """Galerkin's matrices Pᵀ A P of the coarse elements, from those of the fine ones, (e, k, k) or made on call."""
+        count, k = self.fine.dofs.shape
+        make, result = maker(A), np.zeros((len(self.coarse.dofs), k, k))
+        for batch in batches(count, k):
+            part = make(batch)
+            for kind in self.kinds:
+                first, last = np.searchsorted(kind.elements, [batch.start, batch.stop])  # they ascend
+                if first < last:
+                    own = part[kind.elements[first:last] - batch.start]
+                    product = (own.reshape(-1, k) @ kind.interpolation).reshape(-1, k, k)
+                    result[kind.parents[first:last]] += kind.interpolation.T @ product
         return result
 
     def restrict(self, r: Array) -> Array:

@@ -1,7 +1,9 @@
 """Element integrals of the incompressible Navier–Stokes equations on moving elements.
 
 Functions of arrays only. Test functions are indexed by ``i``, trial functions by ``j``; ``N`` is (q, n), derivatives of
-the basis are (e, q, n), integration weights (e, q). Every integral is a batched matrix product.
+the basis are (e, q, n), integration weights (e, q). Every integral is a batched matrix product. Fields are evaluated on
+the reference square, with ``dN`` (q, n, 2) and the inverse Jacobians ``J_inv`` (e, q, 2, 2), ∂ξ_c/∂x_d: one product for
+all elements.
 
 The weak form of the paper's Eqs. (1)–(4) on the current configuration, with the advective velocity a = u - w:
 
@@ -15,7 +17,17 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["convection", "divergence", "grad_div", "load", "reaction", "velocity_gradient", "viscous"]
+__all__ = [
+    "advection",
+    "convection",
+    "divergence",
+    "grad_div",
+    "load",
+    "reaction",
+    "stress_work",
+    "velocity_gradient",
+    "viscous",
+]
 
 
 def viscous(dNx: Array, dNy: Array, weights: Array, viscosity: float) -> tuple[Array, Array, Array, Array]:
@@ -53,8 +65,14 @@ def convection(weights: Array, J_inv: Array, density: float, advective: Array) -
 
 
 def reaction(weights: Array, density: float, gradient: Array) -> Array:
-    """Coefficients of Newton's term ∫ ρ N_i (∂_b u_a) N_j, shape (a, b, e, q), of gradients ∂_b u_a (e, q, a, b)."""
-    return np.asarray((density * weights) * gradient.transpose(2, 3, 0, 1))
+    """Coefficients of Newton's term ∫ ρ N_i (∂_b u_a) N_j, shape (a, b, e, q), of gradients ∂_b u_a (a, b, e, q)."""
+    return np.asarray((density * weights) * gradient)
+
+
+def advection(gradient: Array, advective: Array) -> Array:
+    """(a·∇) u, shape (e, q, 2), of gradients ∂_b u_a (a, b, e, q) and advective velocities a (e, q, 2)."""
+    x, y = advective[..., 0], advective[..., 1]
+    return np.stack([row[0] * x + row[1] * y for row in gradient], axis=-1)
 
 
 def divergence(P: Array, dNx: Array, dNy: Array, weights: Array) -> tuple[Array, Array]:
@@ -63,9 +81,35 @@ def divergence(P: Array, dNx: Array, dNy: Array, weights: Array) -> tuple[Array,
     return np.asarray(P.T @ (w * dNx)), np.asarray(P.T @ (w * dNy))
 
 
-def velocity_gradient(dNx: Array, dNy: Array, u: Array) -> Array:
-    """∂_b u_a at quadrature points, shape (e, q, a, b), of nodal velocities (e, n, 2)."""
-    return np.stack([dNx @ u, dNy @ u], axis=-1)
+def velocity_gradient(dN: Array, J_inv: Array, u: Array) -> Array:
+    """∂_b u_a at quadrature points, shape (a, b, e, q), of nodal velocities (e, n, 2)."""
+    e, n, _ = u.shape
+    # Rows (e, a), columns (c, q): derivatives along ξ and η.
+    along = (u.transpose(0, 2, 1).reshape(2 * e, n) @ _columns(dN)).reshape(e, 2, 2, len(dN))
+    result = np.empty((2, 2, e, len(dN)))
+    for a in range(2):
+        for b in range(2):
+            np.multiply(along[:, a, 0], J_inv[:, :, 0, b], out=result[a, b])
+            result[a, b] += along[:, a, 1] * J_inv[:, :, 1, b]
+    return result
+
+
+def stress_work(dN: Array, J_inv: Array, weights: Array, stress: Array) -> Array:
+    """∫ σ_ab ∂_b N_i, shape (e, i, 2), of stresses (a, b, e, q)."""
+    e, q = weights.shape
+    along = np.empty((e, 2, 2, q))
+    for a in range(2):
+        for c in range(2):
+            np.multiply(stress[a, 0], J_inv[:, :, c, 0], out=along[:, a, c])
+            along[:, a, c] += stress[a, 1] * J_inv[:, :, c, 1]
+            along[:, a, c] *= weights
+    nodal = along.reshape(2 * e, 2 * q) @ _columns(dN).T
+    return np.asarray(nodal.reshape(e, 2, -1).transpose(0, 2, 1))
+
+
+def _columns(dN: Array) -> Array:
+    """Reference gradients (q, n, 2) as a matrix of n rows, with the derivatives along ξ at all points first."""
+    return np.asarray(dN.transpose(1, 2, 0).reshape(dN.shape[1], -1))
 
 
 def load(N: Array, weights: Array, density: Array) -> Array:

@@ -35,7 +35,7 @@ def enclosure(problem: Problem, fluid: FluidPart, time: float) -> Iterator[str]:
     still, nobody = np.zeros(points.shape), np.zeros((len(solver.boundary.interface), 2))
     velocity = solver.boundary.impose(still, points, still, nobody, time)
     flux = solver.pressure_work(points)
-    regions.balance(np.zeros(solver.space.dofs.shape), velocity, solver.geometry(points)[0], flux)
+    regions.balance(np.zeros(solver.space.dofs.shape), velocity, solver.geometry(points), flux)
     for net, gross in regions.net_flows(velocity, flux):
         if abs(net) > _ROUNDING * gross:
             yield (

@@ -37,11 +37,10 @@ def start(fluid: FluidPart, time: float) -> Iterator[str]:
             f"fluid.initial_velocity: at ({x:.6g}, {y:.6g}) it differs by {apart[worst]:.4g} from what the boundary "
             "has there: an impulsive start, with large forces in the first steps"
         )
-    _, dNx, dNy = solver.geometry(points)
-    gradient = kernel.velocity_gradient(dNx, dNy, velocity[solver.space.velocity_cells])
-    weights = solver.geometry(points)[0].weights
+    geometry, space = solver.geometry(points), solver.space
+    gradient = kernel.velocity_gradient(space.velocity.dN, geometry.J_inv, velocity[space.velocity_cells])
     with np.errstate(over="ignore", invalid="ignore"):  # absurd velocities fail in the first step
-        size = float(np.sqrt((weights * (gradient**2).sum(axis=(-1, -2))).sum()))
+        size = float(np.sqrt((geometry.weights * (gradient**2).sum(axis=(0, 1))).sum()))
         divergence = fluid_integrals.divergence(solver, state)
     if divergence > _NOTICEABLE * size > _ROUNDING * largest:
         yield (

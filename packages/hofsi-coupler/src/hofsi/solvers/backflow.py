@@ -11,6 +11,7 @@ from hoblock import QuadMesh
 from hofsi import case
 from hofsi.fem.geometry import SideGeometry, side_geometry
 from hofsi.fem.spaces import TaylorHood
+from hofsi.solvers.fluid_matrices import SideTerm
 
 Array = NDArray[np.float64]
 
@@ -47,15 +48,14 @@ class Backflow:
             if (factor := backflow_factor(condition))
         ]
 
-    def add(self, A: Array, points: Array, advective: Array) -> bool:
-        """Add it to element matrices, for a nodal advective velocity (n, 2); return whether fluid comes in anywhere."""
-        active = False
-        for side, w in self._incoming(points, advective):
-            block = side.table.N.T @ (w[:, :, None] * side.table.N)
-            for a in range(2):
-                self._space.add(A, a, a, block, side.elements)
-            active = active or bool(w.any())
-        return active
+    def terms(self, points: Array, advective: Array) -> list[SideTerm]:
+        """Its share of element matrices, for a nodal advective velocity (n, 2); none where no fluid comes in."""
+        return [
+            SideTerm(a, a, side.elements, side.table.N.T @ (w[:, :, None] * side.table.N))
+            for side, w in self._incoming(points, advective)
+            if w.any()
+            for a in range(2)
+        ]
 
     def subtract(self, f: Array, points: Array, advective: Array, velocity: Array) -> None:
         """Take its product with a velocity (n, 2) off element vectors."""

@@ -37,7 +37,7 @@ class EnclosedRegions:
     constraints : NodeConstraints
         Of the velocity.
     flux : ndarray, shape (e, n, 2)
-        ∫ ∂N/∂x over each element, see `pressure_work`.
+        ∫ ∂N/∂x over each element: what a unit pressure does to a velocity.
 
     Attributes
     ----------
@@ -59,12 +59,6 @@ class EnclosedRegions:
 
     def __len__(self) -> int:
         return len(self._elements)
-
-    @staticmethod
-    def pressure_work(geometry: Geometry, *gradients: Array) -> Array:
-        """∫ ∂N/∂x over each element, shape (e, n, 2): what a unit pressure does to a velocity."""
-        w = geometry.weights[:, None, :]
-        return np.stack([(w @ dN)[:, 0] for dN in gradients], axis=-1)
 
     def balance(self, load: Array, velocity: Array, geometry: Geometry, flux: Array, *, moving: bool = False) -> None:
         """Write the evenly spread source that balances the boundary's velocity into element load vectors.

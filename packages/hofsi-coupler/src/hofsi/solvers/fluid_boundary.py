@@ -15,6 +15,7 @@ from hofsi.fem.constraints import DirectedNodes, NodeConstraints
 from hofsi.fem.geometry import SideGeometry, physical_gradients, side_geometry
 from hofsi.fem.normals import consistent_normals
 from hofsi.fem.spaces import TaylorHood
+from hofsi.solvers.fluid_matrices import SideTerm
 
 if TYPE_CHECKING:
     from hoblock.expressions import Expression
@@ -224,14 +225,27 @@ class FluidBoundary:
         values = [np.zeros_like(x) if c is None else c.evaluate(x=x, y=y, t=time) for c in pair]
         return np.stack(values, axis=-1) * side.lengths[..., None]
 
-    def add_do_nothing(self, A: Array, points: Array) -> None:
-        """Add -∫ μ (∂_a u_b n_b) v_a, which turns the natural condition into μ ∂u/∂n - p n = 0."""
+    def subtract_do_nothing(self, r: Array, points: Array, velocity: Array) -> None:
+        """Subtract what the terms of `do_nothing` make of a nodal velocity (n, 2) from element vectors."""
         if not self._open.size:
             return
         space = self._space
+        for side in side_geometry(points[space.velocity_cells], self._open, space.velocity_sides):
+            u = velocity[space.velocity_cells[side.elements]]
+            along = np.stack([dN @ u for dN in physical_gradients(side, side.table)], axis=-2)  # ∂_a u_b
+            traction = self._viscosity * (along @ side.normals[..., None])[..., 0]
+            np.add.at(r, side.elements, space.local_vector(side.table.N.T @ traction))
+
+    def do_nothing(self, points: Array) -> list[SideTerm]:
+        """-∫ μ (∂_a u_b n_b) v_a, which turns the natural condition into μ ∂u/∂n - p n = 0."""
+        if not self._open.size:
+            return []
+        space, terms = self._space, []
         for side in side_geometry(points[space.velocity_cells], self._open, space.velocity_sides):
             gradients = physical_gradients(side, side.table)
             for a in range(2):
                 for b in range(2):
                     w = -self._viscosity * side.normals[..., b]
-                    space.add(A, a, b, side.table.N.T @ (w[:, :, None] * gradients[a]), side.elements)
+                    block = side.table.N.T @ (w[:, :, None] * gradients[a])
+                    terms.append(SideTerm(a, b, side.elements, block))
+        return terms

@@ -11,7 +11,7 @@ from hofsi import case
 from hofsi.counts import Counts
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.element import boundary_first
-from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
+from hofsi.fem.geometry import Geometry, element_geometry
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.kernels import tensor_products
@@ -20,6 +20,7 @@ from hofsi.solvers.backflow import Backflow
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
 from hofsi.solvers.fluid_factors import FluidFactors
+from hofsi.solvers.fluid_matrices import ConstantTerms
 from hofsi.solvers.fluid_system import FluidSystem, fluid_system
 
 Array = NDArray[np.float64]
@@ -63,63 +64,60 @@ class FluidEquations:
         self.factors = FluidFactors(self.counts, linear.lag)
         self._system: FluidSystem | None = None
         self._system_for: object = None
-        self._geometry: tuple[Array, Geometry, Array, Array] | None = None
-        self._constant: tuple[Array, float, Array] | None = None
-        self._row_sums: tuple[Array, float, float] | None = None
+        self._geometry: tuple[Array, Geometry] | None = None
+        self._constant: tuple[Array, float, ConstantTerms] | None = None
+        self._row_sums: tuple[ConstantTerms, float, float] | None = None
         self._enclosed: EnclosedRegions | None = None
-        self._stokes: tuple[Array, FluidSystem, Solver] | None = None
+        self._stokes: tuple[ConstantTerms, FluidSystem, Solver] | None = None
 
     @property
     def convecting(self) -> bool:
         """Whether convection is part of the model."""
         return self.fluid.model == "navier-stokes"
 
-    def geometry(self, points: Array) -> tuple[Geometry, Array, Array]:
-        """Geometry factors and physical gradients, kept while the mesh stands still."""
+    def geometry(self, points: Array) -> Geometry:
+        """Geometry factors, kept while the mesh stands still."""
         if self._geometry is None or self._geometry[0] is not points:
-            geometry = element_geometry(points[self.space.velocity_cells], self.space.velocity)
-            self._geometry = (points, geometry, *physical_gradients(geometry, self.space.velocity))
+            self._geometry = (points, element_geometry(points[self.space.velocity_cells], self.space.velocity))
             self.counts.geometries += 1
-        return self._geometry[1:]
+        return self._geometry[1]
 
-    def constant_matrices(self, points: Array, rate: float) -> Array:
-        """Element matrices without convection, kept while mesh and step size do not change."""
+    def constant_terms(self, points: Array, rate: float) -> ConstantTerms:
+        """Element matrices without convection, the same object while mesh and step size do not change."""
         if self._constant is None or self._constant[0] is not points or self._constant[1] != rate:
-            space = self.space
-            geometry, dNx, dNy = self.geometry(points)
-            k = space.dofs.shape[1]
-            A = np.zeros((len(space.dofs), k, k))
-            xx, xy, yx, yy = kernel.viscous(dNx, dNy, geometry.weights, self.fluid.viscosity)
-            if self.fluid.grad_div:
-                more = kernel.grad_div(dNx, dNy, geometry.weights, self.fluid.grad_div)
-                xx, xy, yx, yy = (a + b for a, b in zip((xx, xy, yx, yy), more, strict=True))
-            if rate:
-                mass = tensor_products.mass(self.products, rate * self.fluid.density * geometry.weights)
-                xx, yy = xx + mass, yy + mass
-            for a, b, block in ((0, 0, xx), (0, 1, xy), (1, 0, yx), (1, 1, yy)):
-                space.put(A, a, b, block)
-            for a, block in enumerate(kernel.divergence(space.pressure.N, dNx, dNy, geometry.weights)):
-                space.put(A, 2, a, block)
-                space.put(A, a, 2, block.transpose(0, 2, 1))
-            self.boundary.add_do_nothing(A, points)
-            self._constant = (points, rate, A)
+            fluid, sides = self.fluid, self.boundary.do_nothing(points)
+            terms = ConstantTerms(
+                self.space,
+                self.products,
+                self.geometry(points),
+                fluid.viscosity,
+                fluid.grad_div,
+                rate * fluid.density,
+                sides,
+            )
+            self._constant = (points, rate, terms)
             self.counts.constant_assemblies += 1
         return self._constant[2]
 
     def row_sums(self, points: Array, rate: float) -> tuple[float, float]:
-        """Bounds of the norms of the assembled sums of |A| over the rows, without convection, and of ∫ |v| |∇N| for it.
+        """About the norms of the assembled sums of |A| over the rows, without convection, and of ∫ |v| |∇N| for it.
 
-        Kept as long as the matrices.
+        Upper bounds but for the do-nothing condition; kept as long as the matrices.
         """
-        A = self.constant_matrices(points, rate)
-        if self._row_sums is None or self._row_sums[0] is not A:
-            space = self.space
-            geometry, dNx, dNy = self.geometry(points)
-            rows = np.sqrt(A.shape[2] * np.einsum("eij,eij->ei", A, A))
-            fixed = assemble_vector(space.dofs, rows, space.size)
-            gradients = geometry.weights * (np.abs(dNx) + np.abs(dNy)).sum(axis=2)
-            convecting = assemble_vector(space.velocity_cells, gradients @ np.abs(space.velocity.N), len(points))
-            self._row_sums = (A, float(np.linalg.norm(fixed)), float(np.linalg.norm(convecting)))
+        terms = self.constant_terms(points, rate)
+        if self._row_sums is None or self._row_sums[0] is not terms:
+            space, fluid, geometry = self.space, self.fluid, self.geometry(points)
+            N, P, dN = np.abs(space.velocity.N), np.abs(space.pressure.N), np.abs(space.velocity.dN)
+            along = np.abs(geometry.J_inv).sum(axis=3)  # |∂_x N| + |∂_y N| is at most Σ_c |∂_c N| of these
+            gradients = (along * dN.sum(axis=1)).sum(axis=2)
+            stress = (2.0 * fluid.viscosity + fluid.grad_div) * gradients + P.sum(axis=1)
+            rows = np.einsum("eqc,qnc->en", (geometry.weights * stress)[:, :, None] * along, dN)
+            rows += rate * fluid.density * (geometry.weights * N.sum(axis=1)) @ N
+            fixed = assemble_vector(space.velocity_cells, rows, len(points))
+            sources = assemble_vector(space.pressure_cells, (geometry.weights * gradients) @ P, space.pressure_count)
+            convecting = assemble_vector(space.velocity_cells, (geometry.weights * gradients) @ N, len(points))
+            size = float(np.hypot(np.sqrt(2.0) * np.linalg.norm(fixed), np.linalg.norm(sources)))
+            self._row_sums = (terms, size, float(np.linalg.norm(convecting)))
         return self._row_sums[1:]
 
     def system(self, points: Array) -> FluidSystem:
@@ -139,13 +137,15 @@ class FluidEquations:
 
     def pressure_work(self, points: Array) -> Array:
         """What a unit pressure does to the velocity, ∫ ∂N/∂x over each element, shape (e, n, 2)."""
-        return EnclosedRegions.pressure_work(*self.geometry(points))
+        geometry = self.geometry(points)
+        unit = np.broadcast_to(np.eye(2)[:, :, None, None], (2, 2, *geometry.weights.shape))
+        return kernel.stress_work(self.space.velocity.dN, geometry.J_inv, geometry.weights, unit)
 
     def stokes_factor(self, points: Array, rate: float) -> Solver:
         """Factors of the matrix without convection, kept as long as the matrix."""
-        A, system = self.constant_matrices(points, rate), self.system(points)
-        if self._stokes is None or self._stokes[0] is not A or self._stokes[1] is not system:
-            self._stokes = (A, system, system.factorise(A))
+        terms, system = self.constant_terms(points, rate), self.system(points)
+        if self._stokes is None or self._stokes[0] is not terms or self._stokes[1] is not system:
+            self._stokes = (terms, system, system.factorise(terms.ask().matrices))
             self.counts.factorised("mesh or step size")
         return self._stokes[2]
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hofsi.counts import Counts
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.fem.element_matrices import MatrixMaker
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.lagged import LaggedSolver
 from hofsi.solvers.fluid_system import FluidSystem
@@ -76,7 +77,7 @@ class FluidFactors:
         self,
         system: FluidSystem,
         problem: Problem,
-        matrices: Callable[[], Array],
+        matrices: Callable[[], MatrixMaker],
         r: Array,
         velocity: Array,
         norm: float,
@@ -90,7 +91,7 @@ class FluidFactors:
         problem : Problem
             What the matrices depend on besides the velocity.
         matrices : callable
-            Makes them, shape (e, k, k).
+            Prepares what makes them.
         r : ndarray, shape (e, k)
             Right-hand side, element by element.
         velocity : ndarray, shape (n, 2)

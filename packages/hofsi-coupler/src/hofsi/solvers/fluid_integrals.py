@@ -15,7 +15,7 @@ __all__ = ["area", "continuity_residual", "dissipation", "divergence", "enstroph
 
 def area(solver: FluidSolver, state: FluidState) -> float:
     """Area of the fluid where it is now."""
-    return float(solver.geometry(state.points[0])[0].weights.sum())
+    return float(solver.geometry(state.points[0]).weights.sum())
 
 
 def kinetic_energy(solver: FluidSolver, state: FluidState) -> float:
@@ -28,14 +28,14 @@ def kinetic_energy(solver: FluidSolver, state: FluidState) -> float:
 def enstrophy(solver: FluidSolver, state: FluidState) -> float:
     """∫ ω²/2 with the vorticity ω = ∂v/∂x - ∂u/∂y."""
     gradient = _gradient(solver, state)
-    return _integral(solver, state, 0.5 * (gradient[..., 1, 0] - gradient[..., 0, 1]) ** 2)
+    return _integral(solver, state, 0.5 * (gradient[1, 0] - gradient[0, 1]) ** 2)
 
 
 def dissipation(solver: FluidSolver, state: FluidState) -> float:
     """∫ 2 μ ε(u):ε(u), the power that becomes heat."""
     gradient = _gradient(solver, state)
-    strain = 0.5 * (gradient + gradient.swapaxes(-1, -2))
-    return _integral(solver, state, 2.0 * solver.fluid.viscosity * (strain * strain).sum(axis=(-1, -2)))
+    strain = 0.5 * (gradient + gradient.swapaxes(0, 1))
+    return _integral(solver, state, 2.0 * solver.fluid.viscosity * (strain * strain).sum(axis=(0, 1)))
 
 
 def divergence(solver: FluidSolver, state: FluidState) -> float:
@@ -50,23 +50,24 @@ def continuity_residual(solver: FluidSolver, state: FluidState) -> float:
     the source that balances them.
     """
     space = solver.space
-    weights = solver.geometry(state.points[0])[0].weights
+    weights = solver.geometry(state.points[0]).weights
     local = (weights * _divergence(solver, state)) @ space.pressure.N
     total = np.bincount(space.pressure_cells.ravel(), weights=local.ravel(), minlength=space.pressure_count)
     return float(np.abs(total).max())
 
 
 def _gradient(solver: FluidSolver, state: FluidState) -> Array:
-    """∂_b u_a at the quadrature points, shape (e, q, a, b)."""
-    _, dNx, dNy = solver.geometry(state.points[0])
-    return kernel.velocity_gradient(dNx, dNy, state.velocity[solver.space.velocity_cells])
+    """∂_b u_a at the quadrature points, shape (a, b, e, q)."""
+    space = solver.space
+    J_inv = solver.geometry(state.points[0]).J_inv
+    return kernel.velocity_gradient(space.velocity.dN, J_inv, state.velocity[space.velocity_cells])
 
 
 def _divergence(solver: FluidSolver, state: FluidState) -> Array:
     gradient = _gradient(solver, state)
-    return np.asarray(gradient[..., 0, 0] + gradient[..., 1, 1])
+    return np.asarray(gradient[0, 0] + gradient[1, 1])
 
 
 def _integral(solver: FluidSolver, state: FluidState, density: Array) -> float:
     """Integral of a density (e, q)."""
-    return float((solver.geometry(state.points[0])[0].weights * density).sum())
+    return float((solver.geometry(state.points[0]).weights * density).sum())

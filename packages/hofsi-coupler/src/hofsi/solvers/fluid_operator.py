@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.fem.assembly import assemble_vector
+from hofsi.fem.element_matrices import MatrixMaker, batches
 from hofsi.kernels import navier_stokes as kernel
-from hofsi.kernels import tensor_products
 from hofsi.solvers.fluid_equations import FluidEquations
+from hofsi.solvers.fluid_matrices import Coefficients, element_matrices
 from hofsi.solvers.fluid_system import FluidSystem
 
 Array = NDArray[np.float64]
@@ -49,7 +50,7 @@ class FluidOperator:
     def _external(self, history: Array, time: float) -> Array:
         """Element load vectors of inertia, body force and given tractions."""
         equations, space = self._equations, self._equations.space
-        geometry, _, _ = equations.geometry(self._points)
+        geometry = equations.geometry(self._points)
         force = equations.fluid.body_force
         f = np.zeros(space.dofs.shape)
         if self._rate or force is not None:
@@ -64,65 +65,89 @@ class FluidOperator:
         equations.boundary.add_loads(f, self._points, time)
         return f
 
-    def without_convection(self) -> Array:
-        """Element matrices of everything else (e, k, k), shared: not to be written to."""
-        return self._equations.constant_matrices(self._points, self._rate)
-
-    def matrices(self, velocity: Array, *, newton: bool) -> Array:
-        """Element matrices A(u) of a nodal velocity (n, 2), with the convection ∫ ρ ((u - w)·∇·)·v.
+    def matrices(self, velocity: Array, *, newton: bool) -> MatrixMaker:
+        """What makes element matrices A(u) of a nodal velocity (n, 2), with the convection ∫ ρ ((u - w)·∇·)·v.
 
         With ``newton`` Newton's term ∫ ρ (·∇u)·v is added.
         """
-        space = self._equations.space
-        A = self.without_convection().copy()
-        geometry, dNx, dNy = self._equations.geometry(self._points)
-        a = space.velocity.N @ (velocity - self._mesh_velocity)[space.velocity_cells]
-        c = kernel.convection(geometry.weights, geometry.J_inv, self._density, a)
-        convection = tensor_products.transport(self._equations.products, *c)
-        if newton:
-            gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
-            g = kernel.reaction(geometry.weights, self._density, gradient).reshape(-1, a.shape[1])
-            xx, xy, yx, yy = np.split(tensor_products.mass(self._equations.products, g), 4)
-            space.add(A, 0, 1, xy)
-            space.add(A, 1, 0, yx)
-            space.add(A, 0, 0, np.add(xx, convection, out=xx))
-            space.add(A, 1, 1, np.add(yy, convection, out=yy))
-        else:
-            space.add(A, 0, 0, convection)
-            space.add(A, 1, 1, convection)
-        counts = self._equations.counts
-        counts.backflows += self._equations.backflow.add(A, self._points, velocity - self._mesh_velocity)
-        counts.assemblies += 1
-        return A
+        equations, space, relative = self._equations, self._equations.space, velocity - self._mesh_velocity
+        geometry = equations.geometry(self._points)
+        a = space.velocity.N @ relative[space.velocity_cells]
+        along = kernel.convection(geometry.weights, geometry.J_inv, self._density, a)
+        reaction = kernel.reaction(geometry.weights, self._density, self._gradient(velocity)) if newton else None
+        sides = equations.backflow.terms(self._points, relative)
+        equations.counts.backflows += bool(sides)
+        equations.counts.assemblies += 1
+        constant = equations.constant_terms(self._points, self._rate).ask()
+        return element_matrices(constant, Coefficients(*along, reaction, sides))
 
     @property
     def _density(self) -> float:
         return self.share * self._equations.fluid.density
 
-    def convection(self, velocity: Array, advective: Array) -> Array:
-        """Element vectors of ∫ ρ (a·∇u)·v for nodal velocities u and a."""
+    def _gradient(self, velocity: Array) -> Array:
+        """∂_b u_a at the quadrature points, shape (a, b, e, q)."""
         space = self._equations.space
-        geometry, dNx, dNy = self._equations.geometry(self._points)
-        gradient = kernel.velocity_gradient(dNx, dNy, velocity[space.velocity_cells])
-        a = space.velocity.N @ advective[space.velocity_cells]
-        density = self._density * (gradient @ a[..., None])[..., 0]
-        return space.local_vector(kernel.load(space.velocity.N, geometry.weights, density))
+        J_inv = self._equations.geometry(self._points).J_inv
+        return kernel.velocity_gradient(space.velocity.dN, J_inv, velocity[space.velocity_cells])
 
     def residual(self, unknowns: Array) -> Array:
-        """Element residuals f - A(u) u, shape (e, k), without assembling A(u)."""
+        """Element residuals f - A(u) u, shape (e, k), from the fields at the quadrature points, without any matrix."""
         velocity = self._velocity(unknowns)
         relative = velocity - self._mesh_velocity
-        r = self.imbalance(self.without_convection(), unknowns) - self.convection(velocity, relative)
-        self._equations.backflow.subtract(r, self._points, relative, velocity)
+        gradient = self._gradient(velocity)
+        advection = self._advection(gradient, relative)
+        return self._imbalance(unknowns, gradient, advection, relative)
+
+    def residual_about(self, unknowns: Array, expected: Array, *, newton: bool) -> Array:
+        """Element residuals of the equations linearised about an expected velocity (n, 2), otherwise as `residual`.
+
+        The convection is û·∇u, with ``newton`` û·∇u + u·∇û - û·∇û, the advecting û less the mesh velocity.
+        """
+        velocity, relative = self._velocity(unknowns), expected - self._mesh_velocity
+        gradient = self._gradient(velocity)
+        advection = self._advection(gradient, relative)
+        if newton:
+            advection += self._advection(self._gradient(expected), velocity - expected)
+        return self._imbalance(unknowns, gradient, advection, relative)
+
+    def residual_without_convection(self, unknowns: Array) -> Array:
+        """Element residuals of Stokes' equations, otherwise as `residual`."""
+        return self._imbalance(unknowns, self._gradient(self._velocity(unknowns)), None, None)
+
+    def _advection(self, gradient: Array, advective: Array) -> Array:
+        """(a·∇) u at the quadrature points, shape (e, q, 2), of a nodal velocity a."""
+        space = self._equations.space
+        return kernel.advection(gradient, space.velocity.N @ advective[space.velocity_cells])
+
+    def _imbalance(self, unknowns: Array, gradient: Array, advection: Array | None, relative: Array | None) -> Array:
+        """Element residuals for a velocity gradient (a, b, e, q), an advection and what advects at outlets."""
+        equations, space, fluid = self._equations, self._equations.space, self._equations.fluid
+        geometry, velocity = equations.geometry(self._points), self._velocity(unknowns)
+        divergence = gradient[0, 0] + gradient[1, 1]
+        pressure = unknowns[velocity.size :][space.pressure_cells] @ space.pressure.N.T
+        stress = fluid.viscosity * (gradient + gradient.swapaxes(0, 1))
+        for a in range(2):
+            stress[a, a] += fluid.grad_div * divergence - pressure
+        nodal = -kernel.stress_work(space.velocity.dN, geometry.J_inv, geometry.weights, stress)
+        if self._rate or advection is not None:
+            inertia = np.zeros((*geometry.weights.shape, 2))
+            if self._rate:
+                inertia += (self._rate * fluid.density) * (space.velocity.N @ velocity[space.velocity_cells])
+            if advection is not None:
+                inertia += self._density * advection
+            nodal -= kernel.load(space.velocity.N, geometry.weights, inertia)
+        r = self.load + space.local_vector(nodal)
+        sources = (geometry.weights * divergence) @ space.pressure.N
+        for rows, part in zip(space.rows(2), np.split(sources, [space.pressure_boundary], axis=1), strict=True):
+            r[:, rows] += part
+        equations.boundary.subtract_do_nothing(r, self._points, velocity)
+        if relative is not None:
+            equations.backflow.subtract(r, self._points, relative, velocity)
         return r
 
     def _velocity(self, unknowns: Array) -> Array:
         return unknowns[: 2 * self._equations.space.velocity_count].reshape(-1, 2)
-
-    def imbalance(self, A: Array, unknowns: Array, load: Array | None = None) -> Array:
-        """Element residuals f - A u, shape (e, k); f is the operator's load if no other is given."""
-        local = unknowns[self._equations.space.dofs]
-        return np.asarray((self.load if load is None else load) - (A @ local[:, :, None])[:, :, 0])
 
     def size(self, residual: Array) -> tuple[float, float]:
         """Norm of what element residuals leave in the free rows, and a scale to compare it with."""
@@ -140,8 +165,10 @@ class FluidOperator:
         if norm > part * self._largest_magnitude(unknowns):
             return False
         space = self._equations.space
-        A = self.matrices(self._velocity(unknowns), newton=False)
-        rows = (np.abs(A, out=A) @ np.abs(unknowns)[space.dofs][:, :, None])[:, :, 0]
+        make, local = self.matrices(self._velocity(unknowns), newton=False), np.abs(unknowns)[space.dofs]
+        rows = np.empty(local.shape)
+        for batch in batches(*local.shape):
+            rows[batch] = (np.abs(make(batch)) @ local[batch, :, None])[:, :, 0]
         return norm <= part * float(np.linalg.norm(assemble_vector(space.dofs, rows, space.size)))
 
     def _largest_magnitude(self, unknowns: Array) -> float:

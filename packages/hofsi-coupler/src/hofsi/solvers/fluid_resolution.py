@@ -43,7 +43,7 @@ def _peclet(solver: FluidSolver, state: FluidState) -> Array:
     space, fluid = solver.space, solver.fluid
     velocity = state.velocity if state.mesh_velocity is None else state.velocity - state.mesh_velocity
     a = space.velocity.N @ velocity[space.velocity_cells]
-    reference = np.abs((solver.geometry(state.points[0])[0].J_inv @ a[..., None])[..., 0]).max(axis=-1)
+    reference = np.abs((solver.geometry(state.points[0]).J_inv @ a[..., None])[..., 0]).max(axis=-1)
     speed = np.hypot(a[..., 0], a[..., 1])
     length = np.divide(2.0 * speed, reference, out=np.zeros_like(speed), where=reference > 0.0)
     return np.asarray(fluid.density * (speed * length).max(axis=1) / (2.0 * fluid.viscosity * space.velocity.order))

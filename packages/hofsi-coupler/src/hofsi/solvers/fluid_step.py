@@ -67,9 +67,7 @@ class FluidStep:
         self._convection: Convection = convection
         self.converged = False
         self._operator = FluidOperator(equations, points, mesh_velocity, rate, history, time)
-        self._matrix: Array | None = None
         self._factor: Solver | None = None
-        self._linear_load: Array | None = None
         self._settled = convection != "linearised" or not equations.convecting
         self._unknowns = np.concatenate([expected.ravel(), state.pressure])
         self._residual: Array | None = None
@@ -105,7 +103,7 @@ class FluidStep:
         unknowns = np.concatenate([velocity.ravel(), self._unknowns[n:]])
         enclosed = self._equations.enclosed(self.points)
         if enclosed:
-            geometry, flux = self._equations.geometry(self.points)[0], self._equations.pressure_work(self.points)
+            geometry, flux = self._equations.geometry(self.points), self._equations.pressure_work(self.points)
             enclosed.balance(self._operator.load, velocity, geometry, flux, moving=bool(self.mesh_velocity.any()))
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found below
             unknowns = self._solve_linear(unknowns) if self.linear else self._solve_nonlinear(unknowns, max_iterations)
@@ -115,27 +113,27 @@ class FluidStep:
         return unknowns[:n].reshape(-1, 2), unknowns[n:]
 
     def _solve_linear(self, unknowns: Array) -> Array:
-        equations, operator = self._equations, self._operator
-        if self._factor is None or self._matrix is None:
-            self._matrix, self._factor = self._factorised()
-        load = operator.load if self._linear_load is None else operator.load + self._linear_load
-        unknowns = unknowns + self._factor.solve(operator.imbalance(self._matrix, unknowns, load))
-        equations.counts.solves += 1
-        self._residual = operator.imbalance(self._matrix, unknowns, load)
+        if self._factor is None:
+            self._factor = self._factorised()
+        unknowns = unknowns + self._factor.solve(self._linear_residual(unknowns))
+        self._equations.counts.solves += 1
+        self._residual = self._linear_residual(unknowns)
         self.converged = True
         return unknowns if self._settled else self._settle(unknowns)
 
-    def _factorised(self) -> tuple[Array, Solver]:
-        """Matrix of a linear step and its factors; sets what it adds to the load."""
-        equations, operator = self._equations, self._operator
+    def _linear_residual(self, unknowns: Array) -> Array:
+        if not self._equations.convecting:
+            return self._operator.residual_without_convection(unknowns)
+        return self._operator.residual_about(unknowns, self._expected, newton=self._convection == "linearised")
+
+    def _factorised(self) -> Solver:
+        """Factors of the matrix of a linear step."""
+        equations = self._equations
         if not equations.convecting:
-            return operator.without_convection(), equations.stokes_factor(self.points, self._rate)
-        newton = self._convection == "linearised"
-        A = operator.matrices(self._expected, newton=newton)
-        if newton:
-            self._linear_load = operator.convection(self._expected, self._expected)
+            return equations.stokes_factor(self.points, self._rate)
         equations.counts.factorised("linear step")
-        return A, equations.system(self.points).factorise(A)
+        matrices = self._operator.matrices(self._expected, newton=self._convection == "linearised")
+        return equations.system(self.points).factorise(matrices)
 
     def _settle(self, unknowns: Array) -> Array:
         """Accept what the first linearisation gives, or go on with Newton's method and linearise about its result."""
@@ -147,7 +145,7 @@ class FluidStep:
         settings = self._equations.nonlinear
         unknowns = self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
         self._expected = unknowns[: self._expected.size].reshape(-1, 2)
-        self._matrix, self._factor, self._linear_load = None, None, None
+        self._factor = None
         return unknowns
 
     def _solve_nonlinear(self, unknowns: Array, max_iterations: int | None) -> Array:

@@ -11,6 +11,7 @@ from hofsi.case import LinearSettings
 from hofsi.counts import Counts
 from hofsi.fem.condensation import CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
+from hofsi.fem.element_matrices import ElementMatrices
 from hofsi.fem.saddle_point import SaddlePointSystem
 from hofsi.fem.spaces import TaylorHood
 from hofsi.linear.choice import choose_solver
@@ -43,8 +44,8 @@ class FluidSystem(Protocol):
         """Make what can be known before the numbers."""
         ...
 
-    def factorise(self, A: Array, *, tolerance: float | None = None) -> Solver:
-        """Make what solves, from element vectors (e, k) to all unknowns, with element matrices (e, k, k).
+    def factorise(self, A: ElementMatrices, *, tolerance: float | None = None) -> Solver:
+        """Make what solves, from element vectors (e, k) to all unknowns, with element matrices.
 
         Iteration may end at the given tolerance of the residual, relative to the right-hand side.
         """
