@@ -12,6 +12,7 @@ from hofsi.counts import Counts
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.element import boundary_first
 from hofsi.fem.geometry import Geometry, element_geometry, physical_gradients
+from hofsi.fem.periodic import pair_sides
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.kernels import tensor_products
@@ -55,7 +56,12 @@ class FluidEquations:
         driven: Index | None = None,
     ) -> None:
         self.mesh, self.fluid, self.nonlinear, self.linear = mesh, fluid, nonlinear, linear
-        self.space = TaylorHood.on(mesh)
+        self.periodic = tuple(
+            pair_sides(mesh, condition.first, condition.second, condition.place)
+            for condition in fluid.boundaries
+            if isinstance(condition, case.Periodic)
+        )
+        self.space = TaylorHood.on(mesh, self.periodic)
         self.products = _velocity_products(self.space)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.backflow = Backflow(mesh, self.space, fluid.boundaries, fluid.density)
@@ -68,6 +74,7 @@ class FluidEquations:
         self._row_sums: tuple[Array, float, float] | None = None
         self._enclosed: EnclosedRegions | None = None
         self._stokes: tuple[Array, FluidSystem, Solver] | None = None
+        self._alike: Array = mesh.points
 
     @property
     def convecting(self) -> bool:
@@ -118,7 +125,7 @@ class FluidEquations:
             rows = np.sqrt(A.shape[2] * np.einsum("eij,eij->ei", A, A))
             fixed = assemble_vector(space.dofs, rows, space.size)
             gradients = geometry.weights * (np.abs(dNx) + np.abs(dNy)).sum(axis=2)
-            convecting = assemble_vector(space.velocity_cells, gradients @ np.abs(space.velocity.N), len(points))
+            convecting = assemble_vector(space.velocity_unknowns, gradients @ np.abs(space.velocity.N), len(points))
             self._row_sums = (A, float(np.linalg.norm(fixed)), float(np.linalg.norm(convecting)))
         return self._row_sums[1:]
 
@@ -130,6 +137,19 @@ class FluidEquations:
             self._system = fluid_system(self.space, constraints, pinned, self.linear, points, self.counts)
             self._system_for = constraints
         return self._system
+
+    def check_periodic(self, points: Array, time: float) -> None:
+        """Check that periodic sides have moved alike, if the mesh has moved.
+
+        Raises
+        ------
+        MeshMotionError
+            Naming the condition.
+        """
+        if self.periodic and points is not self._alike:
+            for sides in self.periodic:
+                sides.check(points, time)
+            self._alike = points
 
     def enclosed(self, points: Array) -> EnclosedRegions:
         """Regions whose pressure has no level; found once, for motion does not open a region."""
