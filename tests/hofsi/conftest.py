@@ -197,3 +197,12 @@ def solid_alone() -> str:
 def channel() -> str:
     """A scene of flow through a channel, as text."""
     return CHANNEL
+
+
+@pytest.fixture
+def periodic_channel() -> str:
+    """The channel with periodic ends and a force, as text."""
+    start, end = CHANNEL.index('[[fluid.boundary]]\non = "left"'), CHANNEL.index("[time]")
+    ends = '[[fluid.boundary]]\non = "left"\ntype = "periodic"\nwith = "right"\n\n'
+    text = CHANNEL[:start] + ends + CHANNEL[end:]
+    return text.replace("viscosity = 0.1", 'viscosity = 0.1\nbody_force = ["0.8", "0"]')

@@ -198,3 +198,94 @@ def test_blocks_without_a_material_are_left_out(read_changed: Read, flap: str) -
     wrong = (*changes[:2], ("[time]", '[[solid.boundary]]\non = ["flap", "inlet"]\ntype = "free"\n\n[time]'))
     with pytest.raises(CaseError, match=r"solid\[0\].boundary\[1\].on: .* is not an edge of a block with a material"):
         read_changed(*wrong)
+
+
+PERIODIC = (
+    'on = "inlet"\ntype = "velocity"\nx = "4*U*y*(H - y)/H**2*sin(t)"\ny = 0',
+    'on = "inlet"\ntype = "periodic"\nwith = "outlet"',
+)
+ONE_END = ('[[fluid.boundary]]\non = "outlet"\ntype = "do-nothing"', "")
+
+
+def test_a_fluid_between_periodic_sides_and_walls_is_enclosed(read_changed: Read, fluid_alone: str) -> None:
+    with pytest.raises(CaseError, match=r"fluid.boundary: the fluid is enclosed .* at b0–b1, b1–c1, c0–c1: "):
+        read_changed(PERIODIC, ONE_END)
+    opened = '[[fluid.boundary]]\non = "top"\ntype = "do-nothing"'
+    read_changed(PERIODIC, (ONE_END[0], opened), ('"bottom", "top"]', '"bottom"]'))
+    read_changed(PERIODIC, ONE_END, text=fluid_alone)
+
+
+def test_an_opening_beyond_a_periodic_side_serves_too(read_changed: Read) -> None:
+    """Without the blocks above the flap its two sides hang together by the periodic one alone."""
+    gone = '    ["a1", "b1", "b2", "a2"], ["b1", "c1", "c2", "b2"], ["c1", "d1", "d2", "c2"],\n'
+    changes = (
+        (gone, ""),
+        ('inlet = [["a0", "a1", "a2"]]', 'inlet = [["a0", "a1"]]'),
+        ('outlet = [["d0", "d1", "d2"]]', 'outlet = [["d0", "d1"]]'),
+        ('top = [["a2", "b2", "c2", "d2"]]', 'top = [["a1", "b1"]]'),
+        ('inside = [["a1", "b1"]]', 'inside = [["c1", "d1"]]'),
+        ('type = "fixed"', 'type = "fixed"\n[[solid.boundary]]\non = "tip"\ntype = "free"'),
+        ('"flap", "bottom"]', '"bottom"]'),
+        PERIODIC,
+    )
+    lid = '[[fluid.boundary]]\non = "inside"\ntype = "{}"'
+    read_changed(*changes, (ONE_END[0], lid.format("do-nothing")))
+    with pytest.raises(CaseError, match=r"the solid at b0–b1, c0–c1: "):
+        read_changed(*changes, (ONE_END[0], lid.format("no-slip")))
+
+
+def test_periodic_sides_do_not_hold_a_steady_flow(read_changed: Read, channel: str) -> None:
+    torus = channel[: channel.index("[[fluid.boundary]]")]
+    for first, second in (("left", "right"), ("bottom", "top")):
+        torus += f'[[fluid.boundary]]\non = "{first}"\ntype = "periodic"\nwith = "{second}"\n'
+    with pytest.raises(CaseError, match=r"no condition gives a velocity, only periodic sides, tractions or pressures"):
+        read_changed(text=torus + "[time]\nsteady = true\n")
+    read_changed(text=torus + "[time]\ndt = 0.1\nsteps = 1\n")
+
+
+def test_a_wall_holds_what_hangs_together_with_it_by_periodic_sides(read_changed: Read, channel: str) -> None:
+    case = read_changed(
+        ('fluid = [["a", "b", "c", "d"]]', 'fluid = [["a", "b", "c", "d"], ["e", "f", "g", "h"]]'),
+        ("d = [0, 1]", "d = [0, 1]\ne = [5, 0]\nf = [6, 0]\ng = [6, 1]\nh = [5, 1]"),
+        (
+            'left = [["d", "a"]]',
+            'left = [["d", "a"]]\nwest = [["h", "e"]]\neast = [["f", "g"]]\nopen = [["e", "f"], ["g", "h"]]',
+        ),
+        ('on = "left"\ntype = "velocity"\nx = "4*y*(1 - y)"\ny = 0', 'on = "left"\ntype = "periodic"\nwith = "east"'),
+        ('on = "right"\ntype = "do-nothing"', 'on = "right"\ntype = "periodic"\nwith = "west"'),
+        ("dt = 0.1\nsteps = 5", "steady = true"),
+        ("[time]", '[[fluid.boundary]]\non = "open"\ntype = "do-nothing"\n[time]'),
+        text=channel,
+    )
+    assert case.fluid is not None
+    assert case.fluid.periodic
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        (
+            ("[time]", '[linear]\nsolver = "amg"\n[time]'),
+            r'linear.solver: there is no multigrid for periodic sides, as those of fluid.boundary\[1\]; expected "au',
+        ),
+        (
+            ("[time]", '[[motion]]\non = "top"\nx = 0\ny = 0\n[mover]\nsliding = "right"\n[time]'),
+            r"mover.sliding: edge b–c of 'right' is periodic \('right' of fluid.boundary\[1\]\): its vertices",
+        ),
+        (
+            ('with = "right"', 'with = "top"'),
+            r"fluid.boundary\[1\].on: edge c–d of 'top' has two conditions: this one and fluid.boundary\[0\]",
+        ),
+    ],
+)
+def test_what_periodic_sides_cannot_have(
+    read_changed: Read, periodic_channel: str, change: tuple[str, str], match: str
+) -> None:
+    with pytest.raises(CaseError, match=match):
+        read_changed(change, text=periodic_channel)
+
+
+def test_a_coupled_edge_cannot_be_periodic(read_changed: Read) -> None:
+    wet = 'on = "inlet"\ntype = "periodic"\nwith = ["outlet", "flap"]'
+    with pytest.raises(CaseError, match=r"fluid.boundary\[0\].on: edge b0–b1 of 'flap' is shared .*: it is coupled"):
+        read_changed((PERIODIC[0], wet), ONE_END)

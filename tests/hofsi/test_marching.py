@@ -11,7 +11,7 @@ import pytest
 
 from hoblock.layout import layout
 from hofsi.build import Problem, build
-from hofsi.errors import CaseError
+from hofsi.errors import CaseError, MeshMotionError
 from hofsi.io.scene import read_case
 from hofsi.quantities import evaluators
 from hofsi.records import StepRecord
@@ -361,3 +361,75 @@ at = "c"
     assert last(scene)[2]["corner"] == pytest.approx(np.hypot(0.02, 0.02), rel=1e-12)
     with pytest.raises(CaseError, match=r"motion\[1\]: at \(2, 1\) and t = 0 it gives .* \(0, -0\.1\), and a motion"):
         last(scene.replace('"-0.1*y*t"', "-0.1"))
+
+
+PERIODIC = """
+[[fluid.boundary]]
+on = "left"
+type = "periodic"
+with = "right"
+[[fluid.boundary]]
+on = ["bottom", "top"]
+type = "no-slip"
+"""
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_couette_flow_between_periodic_sides_that_their_wall_shears_is_exact(mode: str) -> None:
+    _, record, found = last(f"""{BOX}
+[fluid]
+blocks = ["one"]
+density = 2.0
+viscosity = 0.3
+convection = "{mode}"
+initial_velocity = ["y", "0"]
+{PERIODIC}
+[[motion]]
+on = "top"
+x = "t"
+y = 0
+[time]
+dt = 0.1
+steps = 4
+[quantities.drag]
+type = "force"
+on = "bottom"
+component = "x"
+""")
+    assert error(record, lambda x, y: (y, 0.0 * x)) < 1e-11
+    assert found["drag"] == pytest.approx(0.6, abs=1e-11)
+
+
+def test_a_wall_that_waves_pumps_through_periodic_sides() -> None:
+    text = f"""{BOX}
+[fluid]
+blocks = ["one"]
+density = 1.0
+viscosity = 1.0
+{PERIODIC}
+[[motion]]
+on = "top"
+x = 0
+y = "0.3*sin(pi*x - 3*t)"
+[mover]
+type = "pseudo-solid"
+[time]
+dt = 0.05
+steps = 20
+[quantities.left]
+type = "flow-rate"
+on = "left"
+[quantities.right]
+type = "flow-rate"
+on = "right"
+[quantities.balance]
+type = "flow-balance"
+"""
+    _, record, found = last(text)
+    assert found["left"] == pytest.approx(-found["right"], abs=1e-13)
+    assert found["right"] > 0.05  # peristalsis pumps along the wave
+    assert abs(found["balance"]) < 1e-10
+    fluid = record.state.fluid
+    assert fluid is not None
+    with pytest.raises(MeshMotionError, match=r"t = 0: the sides of fluid.boundary\[0\] .* Let both sides move alike"):
+        last(text.replace("pi*x - 3*t", "x - 3*t"))

@@ -282,3 +282,8 @@ def test_nothing_heavy_is_imported(tmp_path: Path, flap: str) -> None:
         env={"PYTHONPATH": ":".join(path for path in sys.path if path)},
     )
     assert {"scipy", "vtkmodules", "matplotlib", "pyamg", "meshio"}.isdisjoint(done.stdout.split())
+
+
+def test_the_plan_says_that_periodic_sides_need_a_direct_solver(read_changed: Read, periodic_channel: str) -> None:
+    planned = plan(read_changed(text=periodic_channel))
+    assert _built(planned, "fluid's linear solver").endswith("; there is no multigrid for periodic sides")

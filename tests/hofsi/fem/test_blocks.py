@@ -49,7 +49,7 @@ def test_batches_of_solvers_are_joined(n):
     np.testing.assert_allclose(B @ solver.solve(R), R, atol=1e-9)
 
 
-@pytest.mark.parametrize("largest", [1e200, np.inf])
-def test_a_flow_that_diverged_is_told_from_a_singular_matrix(largest):
+@pytest.mark.parametrize("rows", [4, 120])
+def test_a_flow_that_diverged_is_told_from_a_singular_matrix(rows):
     with pytest.raises(LinearSolverError, match="has diverged"):
-        block_solver(np.full((2, 4, 4), largest))
+        block_solver(np.full((2, rows, rows), 1e200))

@@ -11,7 +11,7 @@ import pytest
 from hoblock.errors import SceneError
 from hoblock.io.table import Table
 from hoblock.scene import MeshScene
-from hofsi.case import Displacement, DoNothing, Free, NoSlip, Pressure, Roller, Slip, Traction, Velocity
+from hofsi.case import Displacement, DoNothing, Free, NoSlip, Periodic, Pressure, Roller, Slip, Traction, Velocity
 from hofsi.errors import CaseError
 from hofsi.io.conditions import read_fluid_condition, read_solid_condition
 
@@ -51,6 +51,26 @@ def test_open_boundaries_may_be_stabilised_against_backflow(kind: str) -> None:
 @pytest.mark.parametrize(("name", "kind"), [("roller", Roller), ("symmetry", Roller), ("free", Free)])
 def test_solid_conditions_without_values(name: str, kind: type) -> None:
     assert solid(f'type = "{name}"') == kind(("wall",), "boundary[3]")
+
+
+def test_periodic_sides() -> None:
+    assert fluid('type = "periodic"\nwith = "lid"') == Periodic(("wall", "lid"), ("wall",), ("lid",), "boundary[3]")
+    assert Periodic.between(("a", "b"), ("c",)).on == ("a", "b", "c")
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ('type = "periodic"', r"boundary\[3\].with: "),
+        ('type = "periodic"\nwith = "lit"', r"boundary\[3\].with: got the unknown name 'lit'. Did you mean 'lid'"),
+        ('type = "periodic"\nwith = ["lid", "wall"]', r"boundary\[3\].with: 'wall' is on the other side already"),
+        ('type = "periodic"\nwith = "lid"\nx = 1', r"boundary\[3\].x: unknown key"),
+        ('type = "no-slip"\nwith = "lid"', r"boundary\[3\].with: unknown key"),
+    ],
+)
+def test_periodic_sides_that_are_not_two(text: str, match: str) -> None:
+    with pytest.raises(SceneError, match=match):
+        fluid(text)
 
 
 def test_velocity() -> None:

@@ -38,6 +38,13 @@ def test_without_pyamg_the_choice_is_direct_and_says_what_to_install():
     assert "pip install 'hofsi-coupler[amg]'" in choice.reason
 
 
+@pytest.mark.parametrize("asked", ["auto", "amg"])
+def test_periodic_sides_are_for_the_direct_solver(asked):
+    choice = choose_solver(asked, 10**7, periodic=True, memory=4 * GIB, pyamg=True)
+    assert choice.solver == "direct"
+    assert choice.reason == "there is no multigrid for periodic sides"
+
+
 def test_memory_of_the_direct_solver_grows_a_little_faster_than_the_unknowns():
     assert 2.0 < direct_memory(200_000) / direct_memory(100_000) < 2.2
 

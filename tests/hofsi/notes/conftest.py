@@ -16,8 +16,7 @@ from hofsi.notes import notes
 def noted(channel: str) -> Callable[..., tuple[str, ...]]:
     """A function that changes the scene, each old text occurring once, and returns the notes."""
 
-    def read(*changes: tuple[str, str]) -> tuple[str, ...]:
-        text = channel
+    def read(*changes: tuple[str, str], text: str = channel) -> tuple[str, ...]:
         for old, new in changes:
             assert text.count(old) == 1, f"{old!r} occurs {text.count(old)} times"
             text = text.replace(old, new)

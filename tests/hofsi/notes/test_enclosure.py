@@ -37,3 +37,21 @@ def test_with_a_motion_the_balance_is_left_to_the_steps(noted):
     motion = ("[time]", '[[motion]]\non = "right"\nx = "-0.1*t"\ny = 0\n\n[time]')
     notes = noted((OPEN, 'on = "right"\ntype = "no-slip"'), motion)
     assert len(notes) == 1
+
+
+def test_periodic_sides_enclose(noted, periodic_channel):
+    (note,) = noted(text=periodic_channel)
+    assert note.startswith("The fluid is enclosed by given velocities or periodic sides: the pressure is determined")
+    assert noted(("dt = 0.1\nsteps = 5", "steady = true"), text=periodic_channel) == (note,)
+
+
+def test_a_steady_flow_that_nothing_holds_is_an_error_before_the_run(noted, periodic_channel):
+    slip = ('type = "no-slip"', 'type = "slip"')
+    with pytest.raises(CaseError, match=r"nothing holds a uniform velocity along \(1, 0\): the steady velocity"):
+        noted(slip, ("dt = 0.1\nsteps = 5", "steady = true"), text=periodic_channel)
+    assert len(noted(slip, text=periodic_channel)) == 1
+
+
+def test_sides_that_cannot_be_paired_are_an_error_before_the_run(noted, periodic_channel):
+    with pytest.raises(CaseError, match=r"fluid.boundary\[1\].with: 'left' and 'right' are no translation"):
+        noted(("c = [2, 1]", "c = [2, 1.5]"), text=periodic_channel)

@@ -29,5 +29,17 @@ def test_a_start_with_divergence(noted):
     assert share == pytest.approx(100.0 * (along / (along + across)) ** 0.5, rel=0.05)
 
 
+def test_a_start_that_differs_between_periodic_sides(noted, periodic_channel):
+    (_, note, *_) = noted(starting("y*(1 - y)*(1 + x)", "0"), text=periodic_channel)
+    assert note.startswith(
+        "fluid.initial_velocity: it differs by 0.5 between (0, 0.5) and (2, 0.5), which are the same"
+    )
+    assert "by fluid.boundary[1]: the velocity at one of them is taken" in note
+    (enclosed,) = noted(starting("y*(1 - y)*(2 + sin(pi*x))", "pi*cos(pi*x)*(y**3/3 - y**2/2)"), text=periodic_channel)[
+        :1
+    ]
+    assert "periodic" in enclosed
+
+
 def test_a_steady_scene_only_starts_from_it(noted):
     assert noted(starting("0.25", "0"), ("dt = 0.1\nsteps = 5", "steady = true")) == ()

@@ -14,6 +14,7 @@ from hofsi.case import (
     FluidCondition,
     Force,
     NoSlip,
+    Periodic,
     Pressure,
     Probe,
     Roller,
@@ -24,7 +25,17 @@ from hofsi.case import (
     Traction,
     Velocity,
 )
-from hofsi.edge_owners import FLUID, EdgeOwners, components, in_words, named_edges, quad_edges, solid_label
+from hofsi.edge_owners import (
+    FLUID,
+    Edge,
+    EdgeOwners,
+    components,
+    edges_of,
+    in_words,
+    named_edges,
+    quad_edges,
+    solid_label,
+)
 from hofsi.errors import CaseError
 
 __all__ = ["check_case", "check_order", "expressions"]
@@ -52,6 +63,7 @@ def check_case(case: Case) -> None:
     boundary_checks.check_motions(case, owners)
     boundary_checks.check_quantities(case, owners)
     _check_quantities(case)
+    _check_periodic(case)
     _check_enclosed(case, owners)
     if isinstance(case.time, Steady):
         _check_steady(case)
@@ -121,6 +133,43 @@ def _check_quantities(case: Case) -> None:
             raise CaseError(f"it is of the fluid, and there is no [fluid]. {hint}", quantity.place)
 
 
+def _check_periodic(case: Case) -> None:
+    """Refuse what periodic sides cannot be combined with."""
+    if case.fluid is None:
+        return
+    sliding = {edge: name for name, edge in edges_of(case.mesh, case.mover.sliding)}
+    for condition in case.fluid.boundaries:
+        if not isinstance(condition, Periodic):
+            continue
+        if case.linear.solver == "amg":
+            raise CaseError(
+                f'there is no multigrid for periodic sides, as those of {condition.place}; expected "auto" or "direct"',
+                "linear.solver",
+            )
+        for name, edge in edges_of(case.mesh, condition.on):
+            if edge in sliding:
+                raise CaseError(
+                    f"edge {in_words([edge])} of {sliding[edge]!r} is periodic ({name!r} of {condition.place}): its "
+                    "vertices and those opposite would slide to different places. Remove it here",
+                    "mover.sliding",
+                )
+
+
+def _parts(case: Case, fluid: Fluid) -> tuple[frozenset[Edge], ...]:
+    """Edges of the parts of the fluid that hang together, through periodic sides too."""
+    ties = [
+        frozenset(edge for _, edge in edges_of(case.mesh, condition.on))
+        for condition in fluid.boundaries
+        if isinstance(condition, Periodic)
+    ]
+    return components((quad for group in fluid.blocks for quad in case.mesh.blocks[group]), ties)
+
+
+def _given(fluid: Fluid) -> str:
+    """What conditions give that give no velocity."""
+    return "periodic sides, tractions or pressures" if fluid.periodic else "tractions or pressures"
+
+
 def _check_enclosed(case: Case, owners: EdgeOwners) -> None:
     """Dirichlet–Neumann coupling of an enclosed fluid fails: the volume that the solid displaces cannot leave.
 
@@ -135,7 +184,7 @@ def _check_enclosed(case: Case, owners: EdgeOwners) -> None:
         for name in condition.on
         for edge in named_edges(case.mesh, name)
     )
-    for part in components(quad for group in case.fluid.blocks for quad in case.mesh.blocks[group]):
+    for part in _parts(case, case.fluid):
         wet = sorted(edge for edge in part if owners.is_wet(edge))
         if wet and not part & openings:
             raise CaseError(
@@ -182,10 +231,10 @@ def _check_drifting(case: Case, owners: EdgeOwners) -> None:
         for name in condition.on
         for edge in named_edges(case.mesh, name)
     )
-    for part in components(quad for group in case.fluid.blocks for quad in case.mesh.blocks[group]):
+    for part in _parts(case, case.fluid):
         if not part & held and not any(owners.is_wet(edge) for edge in part):
             raise CaseError(
-                "no condition gives a velocity, only tractions or pressures: the steady velocity is not determined. "
+                f"no condition gives a velocity, only {_given(case.fluid)}: the steady velocity is not determined. "
                 'Give an edge type = "velocity", "no-slip" or "slip", or march in time',
                 "fluid.boundary",
             )

@@ -97,9 +97,10 @@ def edges_of(mesh: MeshScene, names: Iterable[str]) -> tuple[tuple[str, Edge], .
     return tuple((name, edge) for name in names for edge in named_edges(mesh, name))
 
 
-def components(quads: Iterable[Quad]) -> tuple[frozenset[Edge], ...]:
-    """Edges of the parts into which blocks fall if only common edges hold them together."""
+def components(quads: Iterable[Quad], ties: Iterable[frozenset[Edge]] = ()) -> tuple[frozenset[Edge], ...]:
+    """Edges of the parts into which blocks fall if only common edges, and sets of tied edges, hold them together."""
     left = [frozenset(quad_edges(quad)) for quad in quads]
+    left += ties
     parts: list[frozenset[Edge]] = []
     while left:
         part = left.pop(0)

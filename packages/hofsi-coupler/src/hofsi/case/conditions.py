@@ -14,6 +14,7 @@ __all__ = [
     "FluidCondition",
     "Free",
     "NoSlip",
+    "Periodic",
     "Pressure",
     "Roller",
     "Slip",
@@ -116,7 +117,31 @@ class DoNothing:
     backflow: float = 0.0
 
 
-FluidCondition: TypeAlias = Velocity | NoSlip | Slip | Traction | Pressure | DoNothing
+@dataclass(frozen=True)
+class Periodic:
+    """Velocity and pressure on one side are those on the other, a translation of it.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Names of the mesh's edges, of both sides.
+    first, second : tuple of str
+        Those of each side.
+    place : str
+    """
+
+    on: tuple[str, ...]
+    first: tuple[str, ...]
+    second: tuple[str, ...]
+    place: str = ""
+
+    @staticmethod
+    def between(first: tuple[str, ...], second: tuple[str, ...], place: str = "") -> Periodic:
+        """Return the condition between two sides."""
+        return Periodic((*first, *second), first, second, place)
+
+
+FluidCondition: TypeAlias = Velocity | NoSlip | Slip | Traction | Pressure | DoNothing | Periodic
 
 
 @dataclass(frozen=True)

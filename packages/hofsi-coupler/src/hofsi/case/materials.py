@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from hofsi.case.conditions import Periodic
+
 if TYPE_CHECKING:
     from hoblock.expressions import Expression
     from hofsi.case.conditions import FluidCondition, SolidCondition
@@ -60,6 +62,11 @@ class Fluid:
     initial_velocity: VectorExpression | None = None
     grad_div: float = 0.0
     place: str = "fluid"
+
+    @property
+    def periodic(self) -> bool:
+        """Whether any sides are periodic."""
+        return any(isinstance(condition, Periodic) for condition in self.boundaries)
 
     def convection_of_steps(self, coupling: CouplingSettings | None) -> Convection:
         """How a time step treats convection, with "auto" resolved.

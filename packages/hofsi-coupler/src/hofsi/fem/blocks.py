@@ -106,7 +106,7 @@ def _failure(B: Array) -> LinearSolverError:
     if largest < _ABSURD:
         return LinearSolverError("the matrix of an element's inner unknowns is singular.", "singular")
     return LinearSolverError(
-        f"the matrix of an element's inner unknowns has entries of {largest:.2g}: the flow has diverged. Lower the time "
-        "step or the Reynolds number, or check the given velocities.",
+        f"the matrix of an element's inner unknowns has entries of {largest:.2g}: the flow has diverged. Lower the "
+        "time step or the Reynolds number, or check the given velocities.",
         "diverged",
     )

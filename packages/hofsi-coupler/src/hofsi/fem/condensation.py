@@ -68,6 +68,8 @@ class CondensedSystem:
     places : ndarray, shape (e, 2), optional
         Where the elements are: condensed matrices are then factorised front by front (see
         `hofsi.linear.multifrontal`), without places by SuperLU.
+    copies : ndarray, shape (c, 2), optional
+        Unknowns of no element, and those whose values they get in a solution.
 
     Attributes
     ----------
@@ -89,8 +91,10 @@ class CondensedSystem:
         constraints: NodeConstraints,
         pinned: tuple[int, ...] = (),
         places: Array | None = None,
+        copies: Index | None = None,
     ) -> None:
         self.dofs, self.boundary, self.size = dofs, boundary, size
+        self.copies = copies
         self._solver: Callable[[sp.csc_matrix], Solver] = DirectFactor
         self._places = places
         self.inner = dofs.shape[1] - boundary
@@ -121,11 +125,17 @@ class CondensedSystem:
         elements = np.flatnonzero(turned.any(axis=1))
         R = np.zeros((len(elements), self.boundary, self.boundary))
         R[:, np.arange(self.boundary), np.arange(self.boundary)] = 1.0
-        for k, element in enumerate(elements):
-            position = {int(dof): local for local, dof in enumerate(dofs[element])}
-            for node in np.unique(nodes[element][turned[element]]):
-                pair = [position[2 * int(node)], position[2 * int(node) + 1]]
-                R[k][np.ix_(pair, pair)] = constraints.frames[node]
+        # In ascending order x and y of a node follow each other; where an element has a node twice, by periodic sides,
+        # both x come first, then both y.
+        order = np.argsort(dofs[elements], axis=1, kind="stable")
+        row, column = np.nonzero(np.take_along_axis(turned[elements], order, axis=1))
+        local = order[row, column]
+        is_x = dofs[elements][row, local] % 2 == 0
+        pair, row = (local[is_x], local[~is_x]), row[is_x]
+        frames = constraints.frames[nodes[elements][row, pair[0]]]
+        for a in range(2):
+            for b in range(2):
+                R[row, pair[a], pair[b]] = frames[:, a, b]
         return elements, R
 
     def solved_by(self, solver: Callable[[sp.csc_matrix], Solver]) -> CondensedSystem:
@@ -266,4 +276,6 @@ class CondensedFactor:
         x[system.dofs[:, :b]] = x_b
         if z is not None:
             x[system.dofs[:, b:]] = z - (self._X @ x_b[:, :, None])[:, :, 0]
+        if system.copies is not None:
+            x[system.copies[:, 0]] = x[system.copies[:, 1]]
         return x

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from hoblock import QuadMesh
 from hoblock.numbering import corner_nodes, number_nodes
 from hoblock.reference import gauss_lobatto, tensor_basis, tensor_gradient, tensor_quadrature
 from hofsi.fem.element import ElementTable, boundary_first, side_table
+from hofsi.fem.periodic import PeriodicSides, representatives
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -32,10 +33,14 @@ class TaylorHood:
     [u_x, u_y, p on the boundary | u_x, u_y, p inside]; globally velocity node n has 2n, 2n + 1 and pressure k has
     2·(velocity nodes) + k.
 
+    Nodes at periodic sides are one node for the equations, by its smallest number, and several for nodal arrays, which
+    hold the same value at each: values are gathered with the cells, and summed with ``dofs``.
+
     Attributes
     ----------
     velocity_cells : ndarray, shape (e, n)
     pressure_cells : ndarray, shape (e, m)
+        Nodes of the elements.
     velocity_count, pressure_count : int
     velocity_boundary, pressure_boundary : int
         Local nodes on the element's boundary.
@@ -44,6 +49,11 @@ class TaylorHood:
     velocity_sides : tuple of ElementTable
         Velocity basis on the four sides.
     dofs : ndarray, shape (e, 2n + m)
+        Unknowns of the elements.
+    node_dofs : ndarray, shape (e, 2n + m)
+        The same where every node counts by itself; the same array without periodic sides.
+    same : tuple of ndarray, or None
+        For each velocity node and each pressure node the one that stands for it; None without periodic sides.
     """
 
     velocity_cells: Index
@@ -57,11 +67,13 @@ class TaylorHood:
     velocity_sides: tuple[ElementTable, ...]
     pressure_sides: tuple[ElementTable, ...]
     dofs: Index
+    node_dofs: Index
+    same: tuple[Index, Index] | None = None
 
     @staticmethod
-    def on(mesh: QuadMesh) -> TaylorHood:
+    def on(mesh: QuadMesh, periodic: Sequence[PeriodicSides] = ()) -> TaylorHood:
         """Make the spaces on a mesh of order p ≥ 2, with p + 2 quadrature points in each direction."""
-        return TaylorHood._numbered(mesh.order, mesh.corners, mesh.cells, len(mesh.points))
+        return TaylorHood._numbered(mesh.order, mesh.corners, mesh.cells, len(mesh.points), periodic)
 
     @staticmethod
     def on_quads(corners: Index, order: int) -> TaylorHood:
@@ -69,15 +81,24 @@ class TaylorHood:
         return TaylorHood._numbered(order, corners, *number_nodes(corners, order))
 
     @staticmethod
-    def _numbered(p: int, corners: Index, velocity_cells: Index, n_count: int) -> TaylorHood:
+    def _numbered(
+        p: int, corners: Index, velocity_cells: Index, n_count: int, periodic: Sequence[PeriodicSides] = ()
+    ) -> TaylorHood:
         if p < 2:
             raise ValueError(f"Taylor–Hood elements need mesh.order >= 2; got {p}.")
         v_order, nb = boundary_first(p)
         p_order, mb = boundary_first(p - 1)
         cells, count = number_nodes(corners, p - 1)
         vc, pc = velocity_cells[:, v_order], cells[:, p_order]
-        x, y, q = 2 * vc, 2 * vc + 1, 2 * n_count + pc
-        dofs = np.concatenate([x[:, :nb], y[:, :nb], q[:, :mb], x[:, nb:], y[:, nb:], q[:, mb:]], axis=1)
+        node_dofs = dofs = _unknowns(vc, pc, nb, mb, n_count)
+        same: tuple[Index, Index] | None = None
+        if periodic:
+            pairs = (
+                np.concatenate([s.pairs(c, o) for s in periodic]) for c, o in ((velocity_cells, p), (cells, p - 1))
+            )
+            velocity, pressure = (representatives(k, n) for k, n in zip(pairs, (n_count, count), strict=True))
+            same = velocity, pressure
+            dofs = _unknowns(velocity[vc], pressure[pc], nb, mb, n_count)
         points, weights = tensor_quadrature(p + 2)
         tables = []
         for order, permutation in ((p, v_order), (p - 1, p_order)):
@@ -103,6 +124,8 @@ class TaylorHood:
             tuple(permuted(table, v_order) for table in side_table(p, p + 2)),
             tuple(permuted(table, p_order) for table in side_table(p - 1, p + 2)),
             dofs,
+            node_dofs,
+            same,
         )
 
     @property
@@ -120,6 +143,38 @@ class TaylorHood:
     def size(self) -> int:
         """Number of unknowns, constrained ones included."""
         return 2 * self.velocity_count + self.pressure_count
+
+    @property
+    def velocity_unknowns(self) -> Index:
+        """The velocity nodes of the elements by the ones that stand for them, shape (e, n)."""
+        return self.velocity_cells if self.same is None else self.same[0][self.velocity_cells]
+
+    @property
+    def pressure_unknowns(self) -> Index:
+        """The pressure nodes of the elements by the ones that stand for them, shape (e, m)."""
+        return self.pressure_cells if self.same is None else self.same[1][self.pressure_cells]
+
+    @property
+    def copies(self) -> Index:
+        """Unknowns that are not solved for, and those that they are copies of, shape (k, 2)."""
+        if self.same is None:
+            return np.zeros((0, 2), dtype=np.int64)
+        velocity, pressure = self.same
+        original = np.concatenate([(2 * velocity[:, None] + np.arange(2)).ravel(), 2 * self.velocity_count + pressure])
+        copied = np.flatnonzero(original != np.arange(self.size))
+        return np.stack([copied, original[copied]], axis=-1)
+
+    def standing_for(self, nodes: Index) -> Index:
+        """The velocity nodes that stand for some, in the same order."""
+        return nodes if self.same is None else self.same[0][nodes]
+
+    def with_copies(self, nodes: Index) -> Index:
+        """Some velocity nodes, ascending, and all that are the same for the equations."""
+        return nodes if self.same is None else np.flatnonzero(np.isin(self.same[0], self.same[0][nodes]))
+
+    def copied(self, velocity: Array) -> Array:
+        """A nodal array (n, ...) with the values of the nodes that stand for others at all of them."""
+        return velocity if self.same is None else velocity[self.same[0]]
 
     @property
     def boundary(self) -> int:
@@ -175,3 +230,9 @@ class TaylorHood:
             on, inside = self.rows(a)
             result[:, on], result[:, inside] = velocity[:, :b, a], velocity[:, b:, a]
         return result
+
+
+def _unknowns(velocity: Index, pressure: Index, nb: int, mb: int, nodes: int) -> Index:
+    """Unknowns of elements in local order, from the numbers of their nodes, those on the boundary (nb, mb) first."""
+    x, y, q = 2 * velocity, 2 * velocity + 1, 2 * nodes + pressure
+    return np.concatenate([x[:, :nb], y[:, :nb], q[:, :mb], x[:, nb:], y[:, nb:], q[:, mb:]], axis=1)

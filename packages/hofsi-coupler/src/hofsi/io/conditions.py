@@ -14,6 +14,7 @@ from hofsi.case import (
     FluidCondition,
     Free,
     NoSlip,
+    Periodic,
     Pressure,
     Roller,
     Slip,
@@ -29,7 +30,7 @@ __all__ = ["PLACE_AND_TIME", "read_fluid_condition", "read_solid_condition"]
 PLACE_AND_TIME = ("x", "y", "t")
 """Variables of expressions on a boundary."""
 
-_FLUID_TYPES = ("velocity", "no-slip", "slip", "symmetry", "traction", "pressure", "do-nothing")
+_FLUID_TYPES = ("velocity", "no-slip", "slip", "symmetry", "traction", "pressure", "do-nothing", "periodic")
 _SOLID_TYPES = ("fixed", "displacement", "roller", "symmetry", "traction", "pressure", "free")
 
 
@@ -64,6 +65,8 @@ def read_fluid_condition(table: Table, mesh: MeshScene, constants: Mapping[str, 
             condition = NoSlip(on, table.place)
         case "slip" | "symmetry":
             condition = Slip(on, table.place)
+        case "periodic":
+            condition = _periodic(table, on, mesh)
         case "do-nothing":
             condition = DoNothing(on, table.place, _backflow(table))
         case "traction":
@@ -99,6 +102,17 @@ def read_solid_condition(table: Table, mesh: MeshScene, constants: Mapping[str, 
             condition = _pressure(table, on, constants)
     table.finish()
     return condition
+
+
+def _periodic(table: Table, on: tuple[str, ...], mesh: MeshScene) -> Periodic:
+    second = edge_names(table, mesh, "with")
+    both = [name for name in second if name in on]
+    if both:
+        raise CaseError(
+            f"{both[0]!r} is on the other side already; expected a side opposite to it. Name that one",
+            table.place_of("with"),
+        )
+    return Periodic.between(on, second, table.place)
 
 
 def _velocity(table: Table, on: tuple[str, ...], constants: Mapping[str, float]) -> Velocity:

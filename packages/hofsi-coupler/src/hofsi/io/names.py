@@ -48,11 +48,11 @@ def check_name(name: str, known: Iterable[str], what: str, place: str) -> None:
         )
 
 
-def edge_names(table: Table, mesh: MeshScene) -> tuple[str, ...]:
-    """Read ``on``: one or several names of the mesh's edges."""
-    names = table.names("on")
+def edge_names(table: Table, mesh: MeshScene, key: str = "on") -> tuple[str, ...]:
+    """Read ``on``, or another key: one or several names of the mesh's edges."""
+    names = table.names(key)
     for name in names:
-        check_name(name, mesh.edges, "edges in [mesh.edges]", table.place_of("on"))
+        check_name(name, mesh.edges, "edges in [mesh.edges]", table.place_of(key))
     return names
 
 

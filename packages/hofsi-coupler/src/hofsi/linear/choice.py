@@ -41,7 +41,12 @@ class Choice:
 
 
 def choose_solver(
-    asked: Literal["auto", "direct", "amg"], unknowns: int, *, memory: int | None = None, pyamg: bool | None = None
+    asked: Literal["auto", "direct", "amg"],
+    unknowns: int,
+    *,
+    periodic: bool = False,
+    memory: int | None = None,
+    pyamg: bool | None = None,
 ) -> Choice:
     """Choose how systems of some size are solved.
 
@@ -50,11 +55,15 @@ def choose_solver(
     asked : {"auto", "direct", "amg"}
     unknowns : int
         After static condensation.
+    periodic : bool
+        Whether there are periodic sides, for which there is no multigrid.
     memory : int, optional
         Of the machine, in bytes; by default what it says.
     pyamg : bool, optional
         Whether pyamg is there; by default whether it is installed.
     """
+    if periodic and asked != "direct":
+        return Choice("direct", "there is no multigrid for periodic sides")
     if asked != "auto":
         return Choice(asked, f'linear.solver = "{asked}"')
     needed = direct_memory(unknowns)

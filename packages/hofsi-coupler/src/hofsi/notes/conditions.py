@@ -50,8 +50,8 @@ def _expected(
                 yield nodes, component.evaluate(x=x, y=y, t=time), velocity[nodes, axis]
     elif isinstance(condition, case.Slip):
         sides = np.concatenate([mesh.edge_groups[name] for name in condition.on])
-        cells = space.velocity_cells
-        for entry in consistent_normals(mesh.points[cells], cells, sides, space.velocity_sides):
+        X, nodes = mesh.points[space.velocity_cells], space.velocity_unknowns
+        for entry in consistent_normals(X, nodes, sides, space.velocity_sides):
             yield entry.nodes, np.zeros(len(entry.nodes)), np.sum(entry.directions * velocity[entry.nodes], axis=1)
 
 

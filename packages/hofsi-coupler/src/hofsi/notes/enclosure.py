@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hofsi.build import FluidPart, Problem
+from hofsi.case import Steady
 
 __all__ = ["enclosure"]
 
@@ -19,15 +20,18 @@ def enclosure(problem: Problem, fluid: FluidPart, time: float) -> Iterator[str]:
     Raises
     ------
     CaseError
-        If nothing moves and the velocities do not balance.
+        If nothing moves and the velocities do not balance, or nothing holds a steady flow between periodic sides.
     """
     solver, points = fluid.solver, fluid.mesh.points
     regions = solver.enclosed(points)
     if not regions:
         return
+    if isinstance(problem.case.time, Steady):
+        regions.expect_held()
     number = "The fluid is" if len(regions) == 1 else f"{len(regions)} parts of the fluid are"
+    around = "given velocities or periodic sides" if solver.periodic else "given velocities"
     yield (
-        f"{number} enclosed by given velocities: the pressure is determined but for a constant; the one with the mean "
+        f"{number} enclosed by {around}: the pressure is determined but for a constant; the one with the mean "
         "0 is taken"
     )
     if problem.case.motions or problem.solid is not None:

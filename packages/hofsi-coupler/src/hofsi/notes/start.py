@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from hofsi.build import FluidPart
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.solvers import fluid_integrals
+from hofsi.solvers.fluid import FluidSolver
 
 Array = NDArray[np.float64]
 
 __all__ = ["start"]
 
 _NOTICEABLE = 1e-3  # parts of the velocity and of its gradient from which a contradiction is told
-
+_SAME = 1e-9  # of the largest velocity: differences between periodic sides that are rounding
 _ROUNDING = 1e-8  # of the velocity: a gradient (its L² norm in the plane is a velocity) that is rounding
 
 
@@ -25,6 +26,7 @@ def start(fluid: FluidPart, time: float) -> Iterator[str]:
     solver, points = fluid.solver, fluid.mesh.points
     if solver.fluid.initial_velocity is None:
         return
+    yield from _differences(solver)
     state = solver.initial_state(time)
     velocity, still = state.velocity, np.zeros(points.shape)
     largest = float(np.abs(velocity).max())
@@ -48,3 +50,20 @@ def start(fluid: FluidPart, time: float) -> Iterator[str]:
             "the first step removes it at once, by a pressure that is large as an impulse. Give a velocity without "
             "divergence if the first steps matter"
         )
+
+
+def _differences(solver: FluidSolver) -> Iterator[str]:
+    """Say where it differs at periodic sides."""
+    points = solver.mesh.points
+    given = solver.initial_velocity(points)
+    largest = float(np.abs(given).max())
+    for sides in solver.periodic:
+        apart = np.hypot(*(given[sides.nodes[:, 0]] - given[sides.nodes[:, 1]]).T)
+        worst = int(np.argmax(apart))
+        if apart[worst] > _SAME * largest:
+            (x, y), (u, v) = (points[sides.nodes[worst, k]] for k in range(2))
+            yield (
+                f"fluid.initial_velocity: it differs by {apart[worst]:.4g} between ({x:.6g}, {y:.6g}) and "
+                f"({u:.6g}, {v:.6g}), which are the same place by {sides.place}: the velocity at one of them is taken. "
+                "Give one with the period of the sides"
+            )

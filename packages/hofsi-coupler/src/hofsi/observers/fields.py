@@ -117,7 +117,8 @@ def _vorticity(problem: Problem) -> FluidVorticity | None:
         return None
     from hofsi.solvers.fluid_vorticity import FluidVorticity
 
-    return FluidVorticity(problem.fluid.mesh)
+    same = problem.fluid.solver.space.same
+    return FluidVorticity(problem.fluid.mesh, None if same is None else same[0])
 
 
 def _stress(problem: Problem) -> SolidStress | None:

@@ -34,9 +34,12 @@ def _inner(mesh: QuadMesh, order: int) -> int:
 
 def linear_solvers(case: Case, meshes: Meshes) -> dict[str, Choice]:
     """The linear solvers of "fluid" and "solid", as far as there are such."""
-    kept = {}
+    kept, periodic = {}, case.fluid is not None and case.fluid.periodic
     if meshes.fluid is not None:
         kept["fluid"] = condensed_fluid(meshes.fluid[1])
     if meshes.solid is not None:
         kept["solid"] = condensed_solid(meshes.solid[1])
-    return {field: choose_solver(case.linear.solver, count) for field, count in kept.items()}
+    return {
+        field: choose_solver(case.linear.solver, count, periodic=periodic and field == "fluid")
+        for field, count in kept.items()
+    }

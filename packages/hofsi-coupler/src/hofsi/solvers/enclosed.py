@@ -17,6 +17,7 @@ Index = NDArray[np.int64]
 __all__ = ["EnclosedRegions"]
 
 _CLOSED = 1e-9  # part of ∮ φ n that a free direction may carry by round-off
+_CLOSED_PERIODIC = 1e-6  # the same where sides cancel that need not agree to round-off
 _LEAK = 0.02  # net flux, as a part of ∮ |u|, that elements explain which do not resolve the given velocities, ...
 _LEAK_IN_MOTION = 0.1  # ... and the one that the time discretisation of a moving boundary explains
 
@@ -43,18 +44,25 @@ class EnclosedRegions:
     ----------
     pinned : tuple of int
         One unknown of each region, numbered as in the space.
+    drifts : tuple of ndarray, shape (2,)
+        Directions of uniform velocities that nothing holds, of any region between periodic sides.
     """
 
     def __init__(self, space: TaylorHood, constraints: NodeConstraints, flux: Array) -> None:
         self._space = space
         self._elements = [
             elements
-            for elements in _connected(space.pressure_cells, space.pressure_count)
+            for elements in _connected(space.pressure_unknowns, space.pressure_count)
             if _closed(space, constraints, flux, elements)
         ]
         # Pressure numbers begin with the elements' corners; the first local one is never eliminated with the interior.
         self.pinned = tuple(
-            2 * space.velocity_count + int(space.pressure_cells[elements[0], 0]) for elements in self._elements
+            2 * space.velocity_count + int(space.pressure_unknowns[elements[0], 0]) for elements in self._elements
+        )
+        self.drifts = tuple(
+            direction
+            for elements in (self._elements if space.same is not None else [])
+            for direction in _drifts(constraints, np.unique(space.velocity_unknowns[elements]))
         )
 
     def __len__(self) -> int:
@@ -81,7 +89,8 @@ class EnclosedRegions:
         """
         space = self._space
         for elements, (net, gross) in zip(self._elements, self.net_flows(velocity, flux), strict=True):
-            rounding = 1e-12 * float(np.abs(flux[elements] * velocity[space.velocity_cells[elements]]).sum())
+            largest = np.abs(velocity[space.velocity_cells[elements]]).max()
+            rounding = 1e-12 * float(np.abs(flux[elements]).sum() * largest)
             if abs(net) > (_LEAK_IN_MOTION if moving else _LEAK) * gross + rounding:
                 raise CaseError(
                     f"the velocities around an enclosed part of the fluid bring in {-net:.4g} per unit time more than "
@@ -99,11 +108,28 @@ class EnclosedRegions:
         """∮ u·n and about ∮ |u| of each region, for a velocity (n, 2) with the boundary's values."""
         flows = []
         for elements in self._elements:
-            cells = self._space.velocity_cells[elements]
+            cells = self._space.velocity_unknowns[elements]
             flows.append(
                 (float((flux[elements] * velocity[cells]).sum()), _gross_flux(cells, flux[elements], velocity))
             )
         return flows
+
+    def expect_held(self) -> None:
+        """Check that no region can have any uniform velocity on top, which a steady flow does not determine.
+
+        Raises
+        ------
+        CaseError
+            If one can.
+        """
+        if self.drifts:
+            x, y = self.drifts[0] * np.sign(self.drifts[0][np.abs(self.drifts[0]).argmax()])
+            raise CaseError(
+                f"between periodic sides nothing holds a uniform velocity along ({x:.4g}, {y:.4g}): the steady "
+                "velocity is determined but for that. March in time, from an initial velocity, or give an edge "
+                'type = "no-slip" or "velocity"',
+                "fluid.boundary",
+            )
 
     def remove_mean(self, pressure: Array, residual: Array, geometry: Geometry, flux: Array) -> None:
         """Subtract each region's mean pressure, and what it did, from the pressure (m,) and the element residuals."""
@@ -133,10 +159,21 @@ def _nodal_flux(cells: Index, flux: Array) -> tuple[Index, Array]:
 
 
 def _closed(space: TaylorHood, constraints: NodeConstraints, flux: Array, elements: Index) -> bool:
-    nodes, total = _nodal_flux(space.velocity_cells[elements], flux[elements])
+    nodes, total = _nodal_flux(space.velocity_unknowns[elements], flux[elements])
     own = (constraints.frames[nodes].transpose(0, 2, 1) @ total[:, :, None])[:, :, 0]
     free = np.abs(own[~constraints.fixed[nodes]])
+    # Through periodic sides what the elements of one side let out cancels with what those of the other let in.
+    if space.same is not None:
+        whole = _nodal_flux(space.velocity_cells[elements], flux[elements])[1]
+        return bool(free.max(initial=0.0) <= _CLOSED_PERIODIC * np.abs(whole).max())
     return bool(free.max(initial=0.0) <= _CLOSED * np.abs(own).max())
+
+
+def _drifts(constraints: NodeConstraints, nodes: Index) -> Array:
+    """Directions of the uniform velocities that the constraints at some nodes allow, shape (0 to 2, 2)."""
+    held = constraints.frames[nodes].transpose(0, 2, 1)[constraints.fixed[nodes]]
+    values, vectors = np.linalg.eigh(held.T @ held)
+    return np.asarray(vectors.T[values <= _CLOSED * max(1.0, float(values[-1]))])
 
 
 def _gross_flux(cells: Index, flux: Array, velocity: Array) -> float:

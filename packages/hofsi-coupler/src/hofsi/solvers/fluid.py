@@ -24,11 +24,17 @@ class FluidSolver(FluidEquations):
     def initial_state(self, time: float = 0.0, points: Array | None = None) -> FluidState:
         """State from the initial velocity of the case, or at rest, on the reference mesh or the given points."""
         points = self.mesh.points if points is None else points
+        self.check_periodic(points, time)
+        velocity = self.space.copied(self.initial_velocity(points))
+        return FluidState((velocity,), np.zeros(self.space.pressure_count), (points,), np.zeros(points.shape), time)
+
+    def initial_velocity(self, points: Array) -> Array:
+        """The initial velocity of the case as it is given, shape (n, 2); zero if it is not."""
         velocity = np.zeros(points.shape)
         if self.fluid.initial_velocity is not None:
             for a, expression in enumerate(self.fluid.initial_velocity):
                 velocity[:, a] = expression.evaluate(x=points[:, 0], y=points[:, 1])
-        return FluidState((velocity,), np.zeros(self.space.pressure_count), (points,), np.zeros(points.shape), time)
+        return velocity
 
     def begin_step(
         self,
@@ -53,6 +59,7 @@ class FluidSolver(FluidEquations):
         convection : {"newton", "picard", "linearised", "extrapolated"}
             The last two expect the velocity extrapolated from the last steps (second order): the step is linear.
         """
+        self.check_periodic(points, time)
         order = min(2, len(state.velocities), len(steps))
         c = bdf_weights(steps[:order])
         history = np.tensordot(c[1:], np.stack(state.velocities[:order]), axes=1)
@@ -71,6 +78,8 @@ class FluidSolver(FluidEquations):
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
         """Start a search for the steady state on a mesh at rest."""
+        self.check_periodic(points, state.time)
+        self.enclosed(points).expect_held()
         zero = np.zeros(points.shape)
         iteration: Convection = "picard" if self.fluid.convection == "picard" else "newton"
         return FluidStep(self, state, points, zero, 0.0, zero, state.time, state.velocity, 0, iteration)

@@ -77,7 +77,8 @@ class _Sliding:
             sides = _sides(mesh, walls)
             self._standing = sides[~_are_driven(mesh, sides, driven)]
             sides = _sides(mesh, [name for c in conditions if isinstance(c, case.NoSlip | case.Slip) for name in c.on])
-            self._carried = np.unique(_nodes_along(mesh, sides[_are_driven(mesh, sides, driven)]))
+            carried = np.unique(_nodes_along(mesh, sides[_are_driven(mesh, sides, driven)]))
+            self._carried = space.standing_for(carried)
 
     def wall_velocity(self, points: Array, mesh_velocity: Array) -> Array:
         """Mesh velocity (n, 2) without its part along these walls; where they meet or end at driven walls it stays."""
@@ -86,13 +87,14 @@ class _Sliding:
         nodes, normals = self._normals(points)
         result = mesh_velocity.copy()
         result[nodes] = np.sum(normals * mesh_velocity[nodes], axis=1)[:, None] * normals
-        return result
+        return self._space.copied(result)
 
     def _normals(self, points: Array) -> tuple[Index, Array]:
         """Nodes that may slide, and their normals; kept while the mesh stands still."""
         if self._last is None or self._last[0] is not points:
-            cells = self._space.velocity_cells
-            smooth = consistent_normals(points[cells], cells, self._standing, self._space.velocity_sides)[0]
+            space = self._space
+            X, nodes = points[space.velocity_cells], space.velocity_unknowns
+            smooth = consistent_normals(X, nodes, self._standing, space.velocity_sides)[0]
             free = ~np.isin(smooth.nodes, self._carried)
             self._last = (points, smooth.nodes[free], smooth.directions[free])
         return self._last[1:]
@@ -101,7 +103,8 @@ class _Sliding:
 class FluidBoundary:
     """The conditions of a fluid, resolved on its mesh.
 
-    Where conditions meet at a node, the interface comes first, then no-slip walls, given velocities, slip.
+    Where conditions meet at a node, the interface comes first, then no-slip walls, given velocities, slip. What holds
+    at a node of a periodic side holds at the other side.
 
     A no-slip wall that is driven has the velocity of the mesh. Along any other wall the nodes may slide, because a
     moving boundary pushes them; such a wall has the normal part of the mesh velocity only.
@@ -131,7 +134,8 @@ class FluidBoundary:
         self._mesh, self._space, self._viscosity = mesh, space, viscosity
         self.interface = interface
         walls = [c for c in conditions if isinstance(c, case.NoSlip)]
-        self.walls = _nodes(mesh, [name for c in walls for name in c.on]) if walls else np.zeros(0, dtype=np.int64)
+        wall_nodes = _nodes(mesh, [name for c in walls for name in c.on]) if walls else np.zeros(0, dtype=np.int64)
+        self.walls, self._wet = space.with_copies(wall_nodes), space.with_copies(interface)
         self._sliding = _Sliding(mesh, space, conditions, driven)
         self._given = [(c, _nodes(mesh, c.on)) for c in conditions if isinstance(c, case.Velocity)]
         slips = [c for c in conditions if isinstance(c, case.Slip)]
@@ -152,7 +156,7 @@ class FluidBoundary:
         """Write what is known of the velocity relative to the mesh, at walls and interface, into a field (n, 2)."""
         walls = self.walls
         advective[walls] = self._sliding.wall_velocity(points, mesh_velocity)[walls] - mesh_velocity[walls]
-        advective[self.interface] = 0.0
+        advective[self._wet] = 0.0
 
     def constraints(self, points: Array) -> NodeConstraints:
         """Constraints at given node positions; the same object as long as the normals of the slip edges stay."""
@@ -165,18 +169,23 @@ class FluidBoundary:
         return self._constraints
 
     def _fixed_entries(self) -> list[DirectedNodes]:
-        entries = [DirectedNodes.component(nodes, axis) for nodes in (self.interface, self.walls) for axis in range(2)]
+        own = self._space.standing_for
+        entries = [
+            DirectedNodes.component(own(nodes), axis) for nodes in (self.interface, self.walls) for axis in range(2)
+        ]
         for condition, nodes in self._given:
             for axis, component in enumerate((condition.x, condition.y)):
                 if component is not None:
-                    entries.append(DirectedNodes.component(nodes, axis))
+                    entries.append(DirectedNodes.component(own(nodes), axis))
         return entries
 
     def _slip_entries(self, points: Array) -> list[DirectedNodes]:
         if not self._slip.size:
             return []
         space = self._space
-        return consistent_normals(points[space.velocity_cells], space.velocity_cells, self._slip, space.velocity_sides)
+        return consistent_normals(
+            points[space.velocity_cells], space.velocity_unknowns, self._slip, space.velocity_sides
+        )
 
     def impose(self, velocity: Array, points: Array, mesh_velocity: Array, interface: Array, time: float) -> Array:
         """Return the velocity with all constraints satisfied.
@@ -198,7 +207,7 @@ class FluidBoundary:
             np.sum(entry.directions * mesh_velocity[entry.nodes], axis=1)
             for entry in constraints.entries[len(values) :]
         ]
-        return constraints.impose(velocity, values)
+        return self._space.copied(constraints.impose(velocity, values))
 
     def add_loads(self, f: Array, points: Array, time: float) -> None:
         """Add given tractions and pressures to element vectors (e, 2n + m)."""

@@ -12,6 +12,7 @@ from hofsi.counts import Counts
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.element import boundary_first
 from hofsi.fem.geometry import Geometry, element_geometry
+from hofsi.fem.periodic import pair_sides
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.kernels import tensor_products
@@ -56,7 +57,12 @@ class FluidEquations:
         driven: Index | None = None,
     ) -> None:
         self.mesh, self.fluid, self.nonlinear, self.linear = mesh, fluid, nonlinear, linear
-        self.space = TaylorHood.on(mesh)
+        self.periodic = tuple(
+            pair_sides(mesh, condition.first, condition.second, condition.place)
+            for condition in fluid.boundaries
+            if isinstance(condition, case.Periodic)
+        )
+        self.space = TaylorHood.on(mesh, self.periodic)
         self.products = _velocity_products(self.space)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.backflow = Backflow(mesh, self.space, fluid.boundaries, fluid.density)
@@ -69,6 +75,7 @@ class FluidEquations:
         self._row_sums: tuple[ConstantTerms, float, float] | None = None
         self._enclosed: EnclosedRegions | None = None
         self._stokes: tuple[ConstantTerms, FluidSystem, Solver] | None = None
+        self._alike: Array = mesh.points
 
     @property
     def convecting(self) -> bool:
@@ -113,9 +120,9 @@ class FluidEquations:
             stress = (2.0 * fluid.viscosity + fluid.grad_div) * gradients + P.sum(axis=1)
             rows = np.einsum("eqc,qnc->en", (geometry.weights * stress)[:, :, None] * along, dN)
             rows += rate * fluid.density * (geometry.weights * N.sum(axis=1)) @ N
-            fixed = assemble_vector(space.velocity_cells, rows, len(points))
-            sources = assemble_vector(space.pressure_cells, (geometry.weights * gradients) @ P, space.pressure_count)
-            convecting = assemble_vector(space.velocity_cells, (geometry.weights * gradients) @ N, len(points))
+            fixed = assemble_vector(space.velocity_unknowns, rows, len(points))
+            sources = assemble_vector(space.pressure_unknowns, (geometry.weights * gradients) @ P, space.pressure_count)
+            convecting = assemble_vector(space.velocity_unknowns, (geometry.weights * gradients) @ N, len(points))
             size = float(np.hypot(np.sqrt(2.0) * np.linalg.norm(fixed), np.linalg.norm(sources)))
             self._row_sums = (terms, size, float(np.linalg.norm(convecting)))
         return self._row_sums[1:]
@@ -128,6 +135,19 @@ class FluidEquations:
             self._system = fluid_system(self.space, constraints, pinned, self.linear, points, self.counts)
             self._system_for = constraints
         return self._system
+
+    def check_periodic(self, points: Array, time: float) -> None:
+        """Check that periodic sides have moved alike, if the mesh has moved.
+
+        Raises
+        ------
+        MeshMotionError
+            Naming the condition.
+        """
+        if self.periodic and points is not self._alike:
+            for sides in self.periodic:
+                sides.check(points, time)
+            self._alike = points
 
     def enclosed(self, points: Array) -> EnclosedRegions:
         """Regions whose pressure has no level; found once, for motion does not open a region."""

@@ -42,6 +42,8 @@ class _Corner:
         Components whose velocity is given; the residual holds the traction of these only.
     slip : bool
         Of the traction only the part along the normal counts.
+    periodic : bool
+        The residual holds the traction of the fluid beyond.
     """
 
     element: int
@@ -49,6 +51,7 @@ class _Corner:
     node: int
     given: tuple[bool, bool]
     slip: bool
+    periodic: bool
 
 
 class NeighbourSides:
@@ -69,6 +72,9 @@ class NeighbourSides:
     ----------
     nodes : ndarray, shape (c,)
         Where they meet; a node may occur twice. Its length is that of this object.
+    cancels : ndarray of bool, shape (c,)
+        Whether the side is periodic and the set has all nodes that are the same as this one: then the shares of the
+        sides opposite add up to no force, and what is integrated would only add its error.
     """
 
     def __init__(self, solver: FluidSolver, sides: Sequence[tuple[int, int]], nodes: Index) -> None:
@@ -77,6 +83,10 @@ class NeighbourSides:
         self._solver, self._corners = solver, sorted(found, key=lambda corner: corner.side)
         cells = solver.space.velocity_cells
         self.nodes = np.array([cells[corner.element, corner.node] for corner in self._corners], dtype=np.int64)
+        own = solver.space.standing_for(self.nodes)
+        others = solver.space.with_copies(np.unique(self.nodes))
+        open_ended = solver.space.standing_for(others[~np.isin(others, nodes)])
+        self.cancels = np.array([corner.periodic for corner in self._corners], dtype=bool) & ~np.isin(own, open_ended)
 
     def __len__(self) -> int:
         return len(self._corners)
@@ -146,7 +156,7 @@ class BoundaryForce:
         for _, load in self._loads(state):
             force -= load.sum(axis=(0, 1))
         if self._neighbours:
-            force += self._neighbours.forces(state).sum(axis=0)
+            force += self._neighbours.forces(state)[~self._neighbours.cancels].sum(axis=0)
         return np.asarray(force)
 
     def moment(self, state: FluidState, about: Array) -> float:
@@ -194,8 +204,9 @@ def _corners(
         condition = conditions.get((element, side))
         given = _given(condition)
         if any(given):
+            slip, periodic = isinstance(condition, case.Slip), isinstance(condition, case.Periodic)
             for node in ends[side][np.isin(mesh.cells[element, ends[side]], nodes)]:
-                yield _Corner(element, side, int(position[node]), given, isinstance(condition, case.Slip))
+                yield _Corner(element, side, int(position[node]), given, slip, periodic)
 
 
 def _gradient(solver: FluidSolver, group: SideGeometry, elements: Index, state: FluidState) -> Array:

@@ -52,7 +52,7 @@ def continuity_residual(solver: FluidSolver, state: FluidState) -> float:
     space = solver.space
     weights = solver.geometry(state.points[0]).weights
     local = (weights * _divergence(solver, state)) @ space.pressure.N
-    total = np.bincount(space.pressure_cells.ravel(), weights=local.ravel(), minlength=space.pressure_count)
+    total = np.bincount(space.pressure_unknowns.ravel(), weights=local.ravel(), minlength=space.pressure_count)
     return float(np.abs(total).max())
 
 

@@ -231,11 +231,14 @@ class FluidStep:
         return self._operator.size(self._residual)
 
     def reaction(self) -> Array:
-        """Nodal momentum residual of the last solution, shape (n, 2): the force of the boundary on the fluid."""
+        """Nodal momentum residual of the last solution, shape (n, 2): the force of the boundary on the fluid.
+
+        On periodic sides that includes what the fluid beyond the side exerts.
+        """
         space = self._equations.space
         if self._residual is None:
             raise ValueError("reaction: the step has not been solved yet.")
-        return -assemble_vector(space.dofs, self._residual, space.size)[: 2 * space.velocity_count].reshape(-1, 2)
+        return -assemble_vector(space.node_dofs, self._residual, space.size)[: 2 * space.velocity_count].reshape(-1, 2)
 
     def accept(self) -> FluidState:
         """Return the state at the end of the step."""

@@ -77,8 +77,10 @@ def fluid_system(
     """
     places = points[space.velocity_cells].mean(axis=1)
     kept = space.size - (space.dofs.shape[1] - space.boundary) * len(space.dofs)
-    if choose_solver(linear.solver, kept).solver == "direct":
-        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places)
+    periodic = space.same is not None
+    if choose_solver(linear.solver, kept, periodic=periodic).solver == "direct":
+        copies = space.copies if periodic else None
+        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places, copies)
     return SaddlePointSystem(
         space, constraints, pinned, places, _lengths(points[space.corners]), linear.tolerance, counts
     )

@@ -12,6 +12,7 @@ from hofsi.fem.element import ElementTable
 from hofsi.fem.geometry import element_geometry, physical_gradients
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 __all__ = ["FluidVorticity", "vorticity_at"]
 
@@ -23,18 +24,22 @@ class FluidVorticity:
     ----------
     mesh : QuadMesh
         In any position.
+    same : ndarray, shape (n,), optional
+        For each node the one that stands for it: nodes of periodic sides meet the elements of both.
     """
 
-    def __init__(self, mesh: QuadMesh) -> None:
-        self._cells = mesh.cells
+    def __init__(self, mesh: QuadMesh, same: Index | None = None) -> None:
+        self._cells, self._same = mesh.cells, same
+        self._sums = mesh.cells if same is None else same[mesh.cells]
         nodes = gauss_lobatto(mesh.order)
         self._table = _table(mesh.order, np.stack(np.meshgrid(nodes, nodes, indexing="xy"), axis=-1).reshape(-1, 2))
-        self._share = 1.0 / np.bincount(mesh.cells.ravel(), minlength=len(mesh.points))
+        self._share = 1.0 / np.maximum(np.bincount(self._sums.ravel(), minlength=len(mesh.points)), 1)
 
     def at_nodes(self, points: Array, velocity: Array) -> Array:
         """Return the vorticity (n,) of a velocity (n, 2) on the mesh with node positions ``points`` (n, 2)."""
         values = _vorticity(points[self._cells], velocity[self._cells], self._table)
-        return self._share * np.bincount(self._cells.ravel(), weights=values.ravel(), minlength=len(points))
+        means = self._share * np.bincount(self._sums.ravel(), weights=values.ravel(), minlength=len(points))
+        return means if self._same is None else means[self._same]
 
 
 def vorticity_at(mesh: QuadMesh, location: Location, velocity: Array) -> float:
