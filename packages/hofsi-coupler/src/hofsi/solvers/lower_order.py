@@ -20,11 +20,12 @@ Index = NDArray[np.int64]
 __all__ = ["start_of_lower_order"]
 
 _WORTH_IT = 6  # lowest order whose systems cost enough for a detour
+_LOWEST = 4  # order: a flow of order 3 is too far from one of order 6 or 7
 _ROUGH = 1e-4  # tolerance of the residual there; what the lower order leaves out is larger
 
 
 def start_of_lower_order(solver: FluidSolver, state: FluidState) -> FluidState:
-    """Replace a state at rest by the steady flow of half the order, which starts from half of that in turn.
+    """Replace a state at rest by the steady flow of half the order, at least 4, which starts from half of that in turn.
 
     The lower order costs a tenth to a fifth; from its solution Newton's method makes one or two matrices instead of
     five.
@@ -46,7 +47,7 @@ def start_of_lower_order(solver: FluidSolver, state: FluidState) -> FluidState:
     Hackbusch: Multi-Grid Methods and Applications, Springer 1985, doi:10.1007/978-3-662-02427-0, Chapter 5 (nested
     iteration).
     """
-    order = solver.mesh.order // 2
+    order = max(_LOWEST, solver.mesh.order // 2)
     if solver.mesh.order < _WORTH_IT or not solver.convecting or state.velocity.any():
         return state
     low = resample(solver.mesh.with_points(state.points[0]), order)
