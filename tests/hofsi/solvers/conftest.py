@@ -16,6 +16,7 @@ NOBODY = np.zeros((0, 2))
 class Flows:
     """Ways to make a fluid and to solve for it."""
 
+    parabola = "4*y*(1 - y)"
     around = ("left", "right", "bottom", "top")
 
     @staticmethod
@@ -91,6 +92,25 @@ class Flows:
         counts = {(0, sectors): rings} | dict.fromkeys(pairs["inner"], count)
         quads = {"fluid": [(k, sectors + k, sectors + j, j) for k, j in enumerate(following)]}
         return generate(BlockStructure.build(vertices, quads, counts=counts, curves=curves, edges=pairs), order)
+
+    @staticmethod
+    def wobble(X, t):
+        """Smooth motion of all nodes, boundary included; large enough to bend every element."""
+        x, y = X.T
+        return X + 0.06 * np.stack(
+            [
+                np.sin(3.0 * t) * np.sin(2.0 * np.pi * y + 0.4) + 0.3 * np.cos(2.0 * x + t),
+                np.sin(2.0 * t + 1.0) * np.sin(2.0 * np.pi * x + 0.2),
+            ],
+            axis=-1,
+        )
+
+    @staticmethod
+    def channel(order=2, columns=3, rows=2, profile=None, **fluid):
+        """Flow through a channel of length 3 and height 1."""
+        inlet = Flows.velocity("left", profile or Flows.parabola, 0)
+        conditions = [inlet, case.NoSlip(("top", "bottom")), case.DoNothing(("right",))]
+        return Flows.solver(Flows.grid(order, columns, rows, size=(3.0, 1.0)), conditions, **fluid)
 
     @staticmethod
     def rotation(angle):

@@ -1,0 +1,90 @@
+"""The fluid: what is computed how often."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hofsi import case
+
+NOBODY = np.zeros((0, 2))
+
+
+def test_a_mesh_at_rest_is_prepared_once(flows):
+    solver = flows.channel(initial_velocity=(flows.parabola, "0"))
+    flows.march(solver, solver.initial_state(), (0.1,) * 5, linear=True)
+    counts = solver.counts
+    assert counts.geometries == 1
+    assert counts.constant_assemblies == 2  # BDF1, then BDF2
+    assert (counts.assemblies, counts.factorisations, counts.solves) == (5, 5, 5)
+    assert counts.iterations == 0
+
+
+def test_stokes_flow_on_a_mesh_at_rest_is_factorised_once_for_each_step_size(flows):
+    solver = flows.channel(model="stokes")
+    state = flows.march(solver, solver.initial_state(), (0.1,) * 5, linear=True)
+    counts = solver.counts
+    assert (counts.geometries, counts.constant_assemblies, counts.assemblies) == (1, 2, 0)
+    assert (counts.factorisations, counts.solves) == (2, 5)
+    flows.march(solver, state, (0.05,), linear=False, steps=(0.1,) * 5)
+    assert counts.factorisations == 3
+    assert counts.assemblies == 0
+
+
+def test_a_moving_mesh_is_prepared_once_a_step(flows):
+    solver = flows.channel(initial_velocity=(flows.parabola, "0"))
+    X = solver.mesh.points
+    flows.march(solver, solver.initial_state(), (0.1,) * 3, lambda t: X * [1.0 + 0.1 * t, 1.0], linear=True)
+    assert (solver.counts.geometries, solver.counts.factorisations) == (3, 3)
+
+
+def test_a_linear_step_is_factorised_once_however_often_it_is_solved(flows):
+    mesh = flows.grid(3)
+    top = mesh.edge_nodes("top")
+    conditions = [case.NoSlip(("left", "bottom")), case.DoNothing(("right",))]
+    solver = flows.solver(mesh, conditions, interface=top)
+    step = solver.begin_step(solver.initial_state(), mesh.points, (0.1,), 0.1, convection="extrapolated")
+    results = [step.solve(np.full((len(top), 2), value))[0] for value in (1.0, 3.0)]
+    assert (solver.counts.factorisations, solver.counts.solves) == (1, 2)
+    np.testing.assert_allclose(results[1], 3.0 * results[0], rtol=0.0, atol=1e-12)
+    np.testing.assert_array_equal(results[0][top], 1.0)  # the interface comes before walls and openings
+    assert np.abs(results[0]).max() >= 1.0
+
+
+def test_a_linearised_step_far_from_what_was_expected_is_linearised_about_what_newtons_method_finds(flows):
+    mesh = flows.grid(3)
+    top = mesh.edge_nodes("top")
+    conditions = [case.NoSlip(("left", "bottom")), case.DoNothing(("right",))]
+    expected, found = (flows.solver(mesh, conditions, interface=top, viscosity=0.05) for _ in range(2))
+    moved, further = np.full((len(top), 2), 1.0), np.full((len(top), 2), 1.01)
+    step = expected.begin_step(expected.initial_state(), mesh.points, (0.1,), 0.1, convection="linearised")
+    newton = found.begin_step(found.initial_state(), mesh.points, (0.1,), 0.1, convection="newton")
+    gaps = [np.abs(step.solve(d)[0] - newton.solve(d)[0]).max() for d in (moved, further)]
+    assert gaps[0] < 1e-9  # both are Newton's solution
+    assert 1e-8 < gaps[1] < 2e-4  # of second order in the difference of 1 %
+    made = expected.counts.factorisations
+    step.solve(moved)
+    assert expected.counts.factorisations == made  # once more after Newton's, then no more
+
+
+@pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
+def test_nothing_is_kept_of_a_mesh_that_has_moved_on(flows, model):
+    # Slip walls, so that frames, constraints, pattern, matrices and factors all belong to the old position.
+    def made(turn):
+        Q = flows.rotation(turn)
+        conditions = [
+            flows.velocity("left", "1 + 0.3*sin(4*y)", "0.2"),
+            case.Slip(("top", "bottom")),
+            flows.pressure("right", "y"),
+        ]
+        return flows.solver(flows.grid(3), conditions, viscosity=0.2, model=model), Q
+
+    solver, Q = made(0.4)
+    before = flows.steady(solver)
+    here = solver.mesh.points @ Q.T
+    fresh, _ = made(0.4)
+    found, expected = (s.begin_steady(s.initial_state(), here).solve(NOBODY)[0] for s in (solver, fresh))
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-11)
+    again = solver.begin_steady(solver.initial_state(), solver.mesh.points).solve(NOBODY)[0]
+    np.testing.assert_allclose(again, before.velocity, rtol=0.0, atol=1e-11)
+    assert np.abs(found - before.velocity).max() > 0.05
