@@ -24,7 +24,7 @@ Single = NDArray[np.float32]
 
 __all__ = ["GridCycle", "GridLevel", "grid_levels"]
 
-_DIRECT = 30_000  # unknowns on element boundaries at most on the level that is solved by LU
+_DIRECT = 100_000
 _GAIN = 0.7  # a coarser level must not have a larger part of the unknowns
 
 
