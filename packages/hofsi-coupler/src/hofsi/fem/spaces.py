@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -203,7 +204,10 @@ class TaylorHood:
             Blocks of a pressure and each component; the transposed ones are theirs.
         """
         width = self.dofs.shape[1]
-        A = np.zeros((velocity.shape[2], width, width))
+        A = np.empty((velocity.shape[2], width, width))
+        for rows, _ in self._halves[2]:
+            for columns, _ in self._halves[2]:
+                A[:, rows, columns] = 0.0
         for a in range(2):
             for b in range(2):
                 self.put(A, a, b, velocity[a, b])
@@ -213,14 +217,18 @@ class TaylorHood:
 
     def put(self, A: Array, row: int, column: int, block: Array) -> None:
         """Write the block of a pair of fields into element matrices in local order."""
-        for rows, first in self._halves(row):
-            for columns, second in self._halves(column):
+        for rows, first in self._halves[row]:
+            for columns, second in self._halves[column]:
                 A[:, rows, columns] = block[:, first, second]
 
-    def _halves(self, field: int) -> Iterator[tuple[slice, slice]]:
-        """Rows of a field on the boundary and inside, in an element's matrix and in a block."""
-        b = self.on_boundary(field)
-        yield from zip(self.rows(field), (slice(None, b), slice(b, None)), strict=True)
+    @cached_property
+    def _halves(self) -> tuple[tuple[tuple[slice, slice], ...], ...]:
+        """Rows of each field on the boundary and inside, in an element's matrix and in a block."""
+        counts = [self.on_boundary(field) for field in range(3)]
+        return tuple(
+            tuple(zip(self.rows(field), (slice(None, b), slice(b, None)), strict=True))
+            for field, b in enumerate(counts)
+        )
 
     def local_vector(self, velocity: Array) -> Array:
         """Element vectors (e, 2n + m) from nodal vectors (e, n, 2); zero for the pressure."""

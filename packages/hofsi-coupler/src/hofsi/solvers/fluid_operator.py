@@ -45,6 +45,7 @@ class FluidOperator:
     ) -> None:
         self._equations, self._points, self._mesh_velocity, self._rate = equations, points, mesh_velocity, rate
         self.share = 1.0
+        self._about: tuple[Array, Array] | None = None
         self.load = self._external(history, time)
 
     def _external(self, history: Array, time: float) -> Array:
@@ -74,7 +75,7 @@ class FluidOperator:
         geometry = equations.geometry(self._points)
         a = space.velocity.N @ relative[space.velocity_cells]
         along = kernel.convection(geometry.weights, geometry.J_inv, self._density, a)
-        reaction = kernel.reaction(geometry.weights, self._density, self._gradient(velocity)) if newton else None
+        reaction = kernel.reaction(geometry.weights, self._density, self._gradient_about(velocity)) if newton else None
         sides = equations.backflow.terms(self._points, relative)
         equations.counts.backflows += bool(sides)
         equations.counts.assemblies += 1
@@ -90,6 +91,12 @@ class FluidOperator:
         space = self._equations.space
         J_inv = self._equations.geometry(self._points).J_inv
         return kernel.velocity_gradient(space.velocity.dN, J_inv, velocity[space.velocity_cells])
+
+    def _gradient_about(self, velocity: Array) -> Array:
+        """The same of a velocity that is linearised about, usually several times: the last one is kept."""
+        if self._about is None or self._about[0] is not velocity:
+            self._about = velocity, self._gradient(velocity)
+        return self._about[1]
 
     def residual(self, unknowns: Array) -> Array:
         """Element residuals f - A(u) u, shape (e, k), from the fields at the quadrature points, without any matrix."""
@@ -108,7 +115,7 @@ class FluidOperator:
         gradient = self._gradient(velocity)
         advection = self._advection(gradient, relative)
         if newton:
-            advection += self._advection(self._gradient(expected), velocity - expected)
+            advection += self._advection(self._gradient_about(expected), velocity - expected)
         return self._imbalance(unknowns, gradient, advection, relative)
 
     def residual_without_convection(self, unknowns: Array) -> Array:
