@@ -121,7 +121,7 @@ def _solid_alone(asked: case.Case, structure: BlockStructure, blocks: list[str],
 
     part = structure.restricted(blocks)
     mesh = _mesh(part, asked.mesh.order)
-    solver = SolidSolver(mesh, asked.solids, asked.nonlinear, asked.linear)
+    solver = SolidSolver(mesh, asked.solids, asked.nonlinear, asked.linear, asked.scheme)
     return Problem(asked, SolidMarch(solver, clock), None, SolidPart(part, mesh, solver), None, clock)
 
 
@@ -161,7 +161,7 @@ def _coupled(asked: case.Case, fluid: BlockStructure, mesh: QuadMesh, solid: Blo
     driven, prescribed = _driven(asked, fluid, mesh, interface.fluid_edges)
     motion = _motion(asked.mover, fluid, mesh, driven)
     fluid_solver = FluidSolver(mesh, asked.fluid, asked.nonlinear, asked.linear, interface.fluid, driven.nodes)
-    solid_solver = SolidSolver(solid_mesh, asked.solids, asked.nonlinear, asked.linear)
+    solid_solver = SolidSolver(solid_mesh, asked.solids, asked.nonlinear, asked.linear, asked.scheme)
     march = CoupledMarch(
         fluid_solver, solid_solver, interface, motion, prescribed, asked.coupling, _accelerator(asked.coupling), clock
     )

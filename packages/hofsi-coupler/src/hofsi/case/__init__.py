@@ -60,6 +60,7 @@ from hofsi.case.settings import (
     LinearSettings,
     NonlinearSettings,
     OutputSettings,
+    SolidScheme,
     Steady,
     TimeSettings,
     Unsteady,
@@ -107,6 +108,7 @@ __all__ = [
     "Slip",
     "Solid",
     "SolidCondition",
+    "SolidScheme",
     "Steady",
     "TimeFunction",
     "TimeSettings",
@@ -130,7 +132,7 @@ class Case:
     solids : tuple of Solid
         At least a fluid or one solid.
     motions : tuple of Motion
-    mover, time, coupling, nonlinear, linear, output
+    mover, time, scheme, coupling, nonlinear, linear, output
         Settings.
     quantities : tuple of Quantity
         In the order of the scene; names are unique.
@@ -146,6 +148,7 @@ class Case:
     time: TimeSettings
     motions: tuple[Motion, ...] = ()
     mover: MoverSettings = field(default_factory=BarrierSettings)
+    scheme: SolidScheme = field(default_factory=SolidScheme)
     coupling: CouplingSettings = field(default_factory=CouplingSettings)
     nonlinear: NonlinearSettings = field(default_factory=NonlinearSettings)
     linear: LinearSettings = field(default_factory=LinearSettings)

@@ -10,6 +10,7 @@ __all__ = [
     "LinearSettings",
     "NonlinearSettings",
     "OutputSettings",
+    "SolidScheme",
     "Steady",
     "TimeSettings",
     "Unsteady",
@@ -58,6 +59,21 @@ class Unsteady:
 
 
 TimeSettings: TypeAlias = Steady | Unsteady
+
+
+@dataclass(frozen=True)
+class SolidScheme:
+    """How solids are advanced in time.
+
+    Attributes
+    ----------
+    name : {"bdf2", "generalised-alpha", "energy-momentum"}
+    spectral_radius : float
+        Of "generalised-alpha", in [0, 1]: what a step leaves of oscillations that are much faster than it.
+    """
+
+    name: Literal["bdf2", "generalised-alpha", "energy-momentum"] = "bdf2"
+    spectral_radius: float = 0.8
 
 
 @dataclass(frozen=True)

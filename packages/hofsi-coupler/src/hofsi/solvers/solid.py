@@ -17,7 +17,7 @@ from hofsi.solvers.solid_newton import SolidNewton, Tangent
 from hofsi.solvers.solid_rest import check_held
 from hofsi.solvers.solid_supports import SolidSupports
 from hofsi.solvers.solid_system import solid_system
-from hofsi.timestepping.schemes import bdf_weights
+from hofsi.timestepping.second_order import MotionStep, backward_difference, generalised_alpha, midpoint
 
 Array = NDArray[np.float64]
 
@@ -41,17 +41,27 @@ class SolidState:
     time : float
     reaction : ndarray, shape (n, 2), or None
         Nodal forces of the supports on the solid, zero where nothing holds it; read-only. None in an initial state.
+    accelerations : tuple of ndarray, shape (n, 2)
+        The newest, if the scheme needs it; for the midpoint rule that of the middle of the last step. Read-only.
+    load : ndarray, shape (n, 2), or None
+        Nodal forces of the fluid; read-only. None in an initial state.
+    step : float
+        Size of the last step, 0 in an initial state.
     """
 
     displacements: tuple[Array, ...]
     velocities: tuple[Array, ...]
     time: float
     reaction: Array | None = None
+    accelerations: tuple[Array, ...] = ()
+    load: Array | None = None
+    step: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.reaction is not None:
-            object.__setattr__(self, "reaction", _frozen(self.reaction))
-        for name in ("displacements", "velocities"):
+        for name in ("reaction", "load"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _frozen(getattr(self, name)))
+        for name in ("displacements", "velocities", "accelerations"):
             object.__setattr__(self, name, tuple(_frozen(array) for array in getattr(self, name)))
 
     @property
@@ -76,6 +86,8 @@ class SolidSolver:
     nonlinear : NonlinearSettings
     linear : LinearSettings, optional
         By default sparse LU.
+    scheme : SolidScheme, optional
+        Of time steps; by default backward differences.
 
     Attributes
     ----------
@@ -93,7 +105,9 @@ class SolidSolver:
         solids: Sequence[case.Solid],
         nonlinear: case.NonlinearSettings,
         linear: case.LinearSettings | None = None,
+        scheme: case.SolidScheme | None = None,
     ) -> None:
+        self.scheme = scheme or case.SolidScheme()
         self.mesh, self.solids, self.nonlinear = mesh, tuple(solids), nonlinear
         self.equations = SolidEquations(mesh, solids)
         self.supports = SolidSupports(mesh, solids, self.equations.cells_of)
@@ -113,13 +127,25 @@ class SolidSolver:
             for field, given in ((d, solid.initial_displacement), (v, solid.initial_velocity)):
                 for a, expression in enumerate(given or ()):
                     field[nodes, a] = expression.evaluate(x=x, y=y)
-        return SolidState((d,), (v,), time)
+        if self.scheme.name != "generalised-alpha":
+            return SolidState((d,), (v,), time)
+        return SolidState((d,), (v,), time, accelerations=(self._initial_acceleration(d, time),))
+
+    def _initial_acceleration(self, displacement: Array, time: float) -> Array:
+        """Acceleration under the loads of the case without a fluid; 0 where the solids are held."""
+        equations = self.equations
+        gradient = equations.gradient(displacement)
+        force = equations.loads.dead(time)
+        for pressure in equations.loads.pressures(time):
+            pressure.add_force(force, displacement)
+        force = force - equations.internal_force(gradient, equations.stress(gradient))
+        factor = self.system.factorise(equations.element_masses())
+        return factor.solve(equations.shared(force)).reshape(-1, 2)
 
     def begin_step(self, state: SolidState, steps: Sequence[float], time: float) -> SolidStep:
         """Start a time step that ends at ``time``.
 
-        Backward differences of second order for displacement and velocity, of first order as long as the state knows
-        one time only.
+        Backward differences are of first order as long as the state knows one time only.
 
         Parameters
         ----------
@@ -129,8 +155,15 @@ class SolidSolver:
         time : float
             At the end of the step.
         """
-        order = min(2, len(state.displacements), len(steps))
-        return SolidStep(self, state, bdf_weights(steps[:order]), time)
+        h = steps[0]
+        if self.scheme.name == "generalised-alpha":
+            acceleration, radius = state.accelerations[0], self.scheme.spectral_radius
+            motion = generalised_alpha(state.displacement, state.velocity, acceleration, h, radius)
+        elif self.scheme.name == "energy-momentum":
+            motion = midpoint(state.displacement, state.velocity, h)
+        else:
+            motion = backward_difference(state.displacements, state.velocities, steps)
+        return SolidStep(self, state, motion, tuple(steps[:2]), time)
 
     def begin_static(self, state: SolidState | None = None) -> SolidStep:
         """Start a search for static equilibrium, from a state or from the initial one.
@@ -142,7 +175,7 @@ class SolidSolver:
         """
         check_held(self.mesh, self.solids, self.equations.cells_of, self.supports.constraints.entries)
         start = self.initial_state() if state is None else state
-        return SolidStep(self, start, None, start.time)
+        return SolidStep(self, start, None, (), start.time)
 
     def keep(self, tangent: Tangent | None) -> None:
         """Keep a tangent for later steps if it holds for them: if all solids are linear."""
@@ -163,24 +196,25 @@ class SolidStep:
     solver : SolidSolver
     state : SolidState
         At the start.
-    weights : ndarray, or None
-        Of the backward difference formula; None for statics.
+    motion : MotionStep, or None
+        What the time scheme makes of the step; None for statics.
+    steps : tuple of float
+        Its size and that of the step before it, newest first; empty for statics.
     time : float
         At the end.
     """
 
-    def __init__(self, solver: SolidSolver, state: SolidState, weights: Array | None, time: float) -> None:
+    def __init__(
+        self, solver: SolidSolver, state: SolidState, motion: MotionStep | None, steps: tuple[float, ...], time: float
+    ) -> None:
         self.solver, self.state, self.time = solver, state, time
-        self._weights = weights
+        self._motion, self._steps = motion, steps
         equations = solver.equations
-        self._dead = equations.loads.dead(time)
+        point = time if motion is None else time - (1.0 - motion.share) * steps[0]
+        self._dead = equations.loads.dead(point)
         self._load: Array | None = None
-        factor, acceleration = 0.0, None
-        self._velocity_history = np.zeros(state.displacement.shape)
-        if weights is not None:
-            factor = float(weights[0]) ** 2
-            self._velocity_history = _history(weights, state.displacements)
-            acceleration = weights[0] * self._velocity_history + _history(weights, state.velocities)
+        gradient = equations.gradient(state.displacement)
+        factor = 0.0 if motion is None else motion.mass_factor
         self._newton = SolidNewton(
             equations,
             solver.supports,
@@ -188,12 +222,20 @@ class SolidStep:
             solver.nonlinear,
             solver.counts,
             time,
+            self._impose,
             factor,
-            acceleration,
-            equations.loads.pressures(time),
-            equations.stress(equations.gradient(state.displacement)),
+            None if motion is None else motion.history,
+            equations.loads.pressures(point),
+            equations.stress(gradient),
             solver.tangent(factor),
+            gradient if motion is not None and motion.averaged else None,
         )
+
+    def _impose(self, point: Array) -> Array:
+        """The supports at the end of the step hold there, whatever that means for the point of equilibrium."""
+        if self._motion is None:
+            return self.solver.supports.impose(point, self.time)
+        return self._motion.point(self.solver.supports.impose(self._motion.end(point), self.time))
 
     def solve(self, load: Array | None = None, guess: Array | None = None, *, tolerance: float | None = None) -> Array:
         """Find the displacement under a load.
@@ -219,8 +261,9 @@ class SolidStep:
             If neither Newton's method from the guess nor applying the load little by little succeeds.
         """
         self._load = load
-        force = self._force(load)
+        force, motion = self._force(load), self._motion
         start = self.state.displacement if guess is None else guess
+        start = start if motion is None else motion.point(start)
         tolerance = self.solver.nonlinear.tolerance if tolerance is None else tolerance
         try:
             result = self._newton.solve(start, force, tolerance)
@@ -229,11 +272,33 @@ class SolidStep:
                 raise
             result = self._newton.solve_by_parts(self.state.displacement, force, tolerance)
         self.solver.keep(self._newton.tangent)
-        return result
+        return result if motion is None else motion.end(result)
 
     def reaction(self, displacement: Array, load: Array | None = None) -> Array:
-        """Forces of the supports on the solid, shape (n, 2): internal force + inertia - loads where it is held."""
-        return self.solver.supports.held_part(self._newton.residual(displacement, self._force(load)))
+        """Forces of the supports on the solid, shape (n, 2): internal force + inertia - loads where it is held.
+
+        At the end of the step, where the midpoint rule has no acceleration: it is extrapolated from two middles. What
+        moving supports exert on their own mass oscillates with the schemes that are not backward differences.
+        """
+        if self._motion is None or self._motion.share == 1.0:
+            return self.solver.supports.held_part(self._newton.residual(displacement, self._force(load)))
+        equations = self.solver.equations
+        gradient = equations.gradient(displacement)
+        force = equations.loads.dead(self.time) + (0.0 if load is None else load)
+        for pressure in equations.loads.pressures(self.time):
+            pressure.add_force(force, displacement)
+        internal = equations.internal_force(gradient, equations.stress(gradient))
+        return self.solver.supports.held_part(
+            internal + equations.mass @ self._final_acceleration(displacement) - force
+        )
+
+    def _final_acceleration(self, displacement: Array) -> Array:
+        assert self._motion is not None
+        acceleration = self._motion.acceleration(displacement)
+        if not self._motion.averaged or not self.state.accelerations:
+            return acceleration
+        h = self._steps[0]
+        return np.asarray(acceleration + h / (h + self.state.step) * (acceleration - self.state.accelerations[0]))
 
     def accept(self, displacement: Array) -> SolidState:
         """Return the state at the end of the step, its reaction under the load that was solved for last.
@@ -253,16 +318,18 @@ class SolidStep:
                 f"solid, t = {self.time:g}",
             )
         reaction = self.reaction(displacement, self._load)
-        if self._weights is None:
-            return SolidState((displacement,), (np.zeros(displacement.shape),), self.time, reaction)
-        velocity = self._weights[0] * displacement + self._velocity_history
-        displacements, velocities = (displacement, self.state.displacement), (velocity, self.state.velocity)
-        return SolidState(displacements, velocities, self.time, reaction)
+        motion, load = self._motion, self._load
+        if motion is None:
+            return SolidState((displacement,), (np.zeros(displacement.shape),), self.time, reaction, load=load)
+        displacements = displacement, self.state.displacement
+        velocities = motion.velocity(displacement), self.state.velocity
+        accelerations = () if self.solver.scheme.name == "bdf2" else (motion.acceleration(displacement),)
+        return SolidState(displacements, velocities, self.time, reaction, accelerations, load, self._steps[0])
 
     def _force(self, load: Array | None) -> Array:
-        return self._dead if load is None else self._dead + load
-
-
-def _history(weights: Array, values: tuple[Array, ...]) -> Array:
-    """Part of a backward difference that is known at the start of the step."""
-    return np.asarray(sum(w * value for w, value in zip(weights[1:], values, strict=False)))
+        """Nodal forces at the point of equilibrium for a load of the fluid at the end of the step."""
+        if load is None:
+            return self._dead
+        share = 1.0 if self._motion is None else self._motion.share
+        before = load if self.state.load is None else self.state.load
+        return self._dead + (load if share == 1.0 else share * load + (1.0 - share) * before)

@@ -151,6 +151,13 @@ class SolidEquations:
             pressure.subtract_stiffness(K, self._position)
         return K
 
+    def element_masses(self) -> Array:
+        """Element matrices of the mass alone, shape (e, 2 i, 2 j)."""
+        e, i, _ = self._element_mass.shape
+        M = np.zeros((e, 2 * i, 2 * i))
+        M[:, 0::2, 0::2] = M[:, 1::2, 1::2] = self._element_mass
+        return M
+
     def shared(self, force: Array) -> Array:
         """Nodal forces (n, 2) as element vectors (e, 2 i) that sum up to them."""
         return np.asarray((force.ravel() * self._share)[self.dofs])

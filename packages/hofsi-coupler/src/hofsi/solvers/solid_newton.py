@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,7 +76,9 @@ class SolidNewton:
     counts : Counts
         Updated.
     time : float
-        Of supports and messages.
+        For messages.
+    impose : callable
+        Takes a displacement, and returns it with all supports satisfied.
     mass_factor : float
         c, 0 for statics.
     history : ndarray, shape (n, 2), or None
@@ -85,6 +88,10 @@ class SolidNewton:
         Of the last solution.
     tangent : Tangent, optional
         To begin with.
+    mean_with : ndarray, shape (e, q, 2, 2), optional
+        Displacement gradient of the start of a step whose d is that of its middle: the stress is then that of the mean
+        of the strains at start and end, E(d) + Δᵀ Δ/2 with the difference Δ between d and the start. The tangent leaves
+        out what depends on Δ; convergence is linear, and fast for small steps.
 
     Attributes
     ----------
@@ -106,12 +113,15 @@ class SolidNewton:
         settings: NonlinearSettings,
         counts: Counts,
         time: float,
+        impose: Callable[[Array], Array],
         mass_factor: float,
         history: Array | None,
         pressures: list[FollowerPressure],
         stress: Array,
         tangent: Tangent | None = None,
+        mean_with: Array | None = None,
     ) -> None:
+        self._impose, self._mean_with = impose, mean_with
         self._equations, self._supports, self._system = equations, supports, system
         self._settings, self._counts, self._time = settings, counts, time
         self._mass_factor, self._pressures = mass_factor, pressures
@@ -142,7 +152,7 @@ class SolidNewton:
         LinearSolverError
             If a tangent is singular.
         """
-        target = self._supports.impose(start, self._time)
+        target = self._impose(start)
         return self._iterate(start, target - start, force, 0.0, tolerance)
 
     def solve_by_parts(self, start: Array, force: Array, tolerance: float) -> Array:
@@ -165,7 +175,7 @@ class SolidNewton:
     def _by_parts(
         self, start: Array, force: Array, imbalance: Array, pressures: list[FollowerPressure], tolerance: float
     ) -> Array:
-        movement = self._supports.impose(start, self._time) - start
+        movement = self._impose(start) - start
         done, part, d = 0.0, 0.25, start
         self.tangent = None
         self._stress = self._equations.stress(self._equations.gradient(start))
@@ -200,6 +210,8 @@ class SolidNewton:
         gradient = eq.gradient(displacement)
         with np.errstate(over="ignore", invalid="ignore"):
             stress = eq.stress(gradient)
+            if self._mean_with is not None:
+                stress = stress + eq.quadratic_stress(gradient - self._mean_with)
             internal = eq.internal_force(gradient, stress)
             external = force
             if self._pressures:
