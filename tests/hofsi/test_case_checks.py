@@ -289,3 +289,8 @@ def test_a_coupled_edge_cannot_be_periodic(read_changed: Read) -> None:
     wet = 'on = "inlet"\ntype = "periodic"\nwith = ["outlet", "flap"]'
     with pytest.raises(CaseError, match=r"fluid.boundary\[0\].on: edge b0–b1 of 'flap' is shared .*: it is coupled"):
         read_changed((PERIODIC[0], wet), ONE_END)
+
+
+def test_a_scheme_for_solids_needs_a_solid(read_changed: Callable[..., Case], fluid_alone: str) -> None:
+    with pytest.raises(CaseError, match=r"time\.solid: there is no \[\[solid\]\]"):
+        read_changed(("[time]", '[time]\nsolid = "generalised-alpha"'), text=fluid_alone)

@@ -123,3 +123,16 @@ def test_steps_follow_a_pulse_and_cost_less_than_equal_ones(channel: str) -> Non
     equal = deviation(pulsed(channel, dt=1.0 / (2 * counts[1]), end=1.0), exact)
     assert errors[1] < 0.4 * errors[0]
     assert errors[1] < equal
+
+
+@pytest.mark.parametrize("scheme", ["generalised-alpha", "energy-momentum"])
+def test_coupled_steps_with_other_schemes_of_the_solid_stay_near(
+    read_changed: Callable[..., Case], scheme: str
+) -> None:
+    ends = []
+    for name in ("bdf2", scheme):
+        case = read_changed(("dt = 0.1\nend = 2.0", f'dt = 0.02\nend = 0.2\nsolid = "{name}"'))
+        *_, record = simulate(build(case))
+        assert record.state.solid is not None
+        ends.append(record.state.solid.displacement)
+    assert 0.0 < np.abs(ends[0] - ends[1]).max() < 0.1 * np.abs(ends[0]).max()

@@ -13,11 +13,19 @@ from hofsi.case import (
     LinearSettings,
     NonlinearSettings,
     OutputSettings,
+    SolidScheme,
     Steady,
     Unsteady,
 )
 from hofsi.errors import CaseError
-from hofsi.io.settings import read_coupling, read_linear, read_nonlinear, read_output, read_time
+from hofsi.io.settings import (
+    read_coupling,
+    read_linear,
+    read_nonlinear,
+    read_output,
+    read_solid_scheme,
+    read_time,
+)
 
 UNSTEADY = Unsteady(0.1, 0.0, 1.0, 10)
 
@@ -182,4 +190,29 @@ def test_steps_may_be_halved_four_times_and_ten_with_a_tolerance():
 def test_divisions_out_of_range_are_refused(keys, place):
     with pytest.raises(SceneError) as caught:
         read_time(Table({"dt": 0.1, "end": 1.0, **keys}, "time"))
+    assert caught.value.place == place
+
+
+def test_schemes_of_solids() -> None:
+    assert read_solid_scheme(Table({"dt": 0.1}, "time")) == SolidScheme("bdf2", 0.8)
+    assert read_solid_scheme(Table({"solid": "energy-momentum"}, "time")).name == "energy-momentum"
+    scheme = read_solid_scheme(Table({"solid": "generalised-alpha", "spectral_radius": 0.5}, "time"))
+    assert scheme == SolidScheme("generalised-alpha", 0.5)
+    table = Table({"dt": 0.1, "steps": 2, "solid": "generalised-alpha"}, "time")
+    read_solid_scheme(table)
+    read_time(table)  # knows the key
+
+
+@pytest.mark.parametrize(
+    ("keys", "place"),
+    [
+        ({"solid": "newmark"}, "time.solid"),
+        ({"spectral_radius": 0.5}, "time.spectral_radius"),
+        ({"solid": "energy-momentum", "spectral_radius": 1.0}, "time.spectral_radius"),
+        ({"solid": "generalised-alpha", "spectral_radius": 1.1}, "time.spectral_radius"),
+    ],
+)
+def test_schemes_that_do_not_exist_are_refused(keys: dict[str, Any], place: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        read_solid_scheme(Table(keys, "time"))
     assert caught.value.place == place

@@ -55,6 +55,8 @@ def check_case(case: Case) -> None:
         The first mistake found, with its place and a way out.
     """
     _check_materials(case)
+    if case.scheme.name != "bdf2" and not case.solids:
+        raise CaseError("there is no [[solid]] that it could be for; expected one. Remove it", "time.solid")
     check_order(case)
     owners = EdgeOwners.build(case.mesh, _groups(case))
     boundary_checks.check_named_edges(case)

@@ -15,7 +15,7 @@ from hofsi.errors import CaseError
 from hofsi.io.materials import read_fluid, read_motion, read_solid
 from hofsi.io.movers import read_mover
 from hofsi.io.quantities import read_quantity
-from hofsi.io.settings import read_coupling, read_linear, read_nonlinear, read_output, read_time
+from hofsi.io.settings import read_coupling, read_linear, read_nonlinear, read_output, read_solid_scheme, read_time
 
 __all__ = ["load_case", "read_case"]
 
@@ -39,7 +39,7 @@ _RIVALS = {
     "steps": ("end", "steady"),
     "end": ("steps", "steady"),
     "dt": ("steady",),
-    "steady": ("dt", "end", "steps", "start", "tolerance", "halvings", "first"),
+    "steady": ("dt", "end", "steps", "start", "tolerance", "halvings", "first", "solid", "spectral_radius"),
 }
 """Keys of ``[time]`` that exclude others."""
 
@@ -127,7 +127,9 @@ def _case(whole: Table, data: Mapping[str, Any], file: str) -> Case:
         raise CaseError("there is nothing to simulate: neither [fluid] nor [[solid]]. Add one of them")
     if not whole.has("time"):
         raise CaseError("[time] is missing. Add it with steady = true, or with dt and end", "time")
-    time = read_time(whole.table("time"))
+    times = whole.table("time")
+    scheme = read_solid_scheme(times)
+    time = read_time(times)
     quantities = tuple(
         read_quantity(name, table, mesh, constants) for name, table in whole.named_tables("quantities").items()
     )
@@ -138,6 +140,7 @@ def _case(whole: Table, data: Mapping[str, Any], file: str) -> Case:
         fluid=read_fluid(whole.table("fluid"), mesh, constants) if whole.has("fluid") else None,
         solids=tuple(read_solid(table, mesh, constants) for table in whole.tables("solid")),
         time=time,
+        scheme=scheme,
         motions=tuple(read_motion(table, mesh, constants) for table in whole.tables("motion")),
         mover=read_mover(whole.table("mover", required=False), mesh, constants),
         coupling=read_coupling(whole.table("coupling", required=False), time),

@@ -12,6 +12,7 @@ from hofsi.case import (
     LinearSettings,
     NonlinearSettings,
     OutputSettings,
+    SolidScheme,
     Steady,
     TimeSettings,
     Unsteady,
@@ -19,7 +20,7 @@ from hofsi.case import (
 from hofsi.errors import CaseError
 from hofsi.io.names import check_name, choice
 
-__all__ = ["read_coupling", "read_linear", "read_nonlinear", "read_output", "read_time"]
+__all__ = ["read_coupling", "read_linear", "read_nonlinear", "read_output", "read_solid_scheme", "read_time"]
 
 _WHOLE = 1e-6
 """How far (end - start)/dt may be from a whole number, in steps."""
@@ -58,6 +59,25 @@ def read_time(table: Table) -> TimeSettings:
     return time
 
 
+def read_solid_scheme(table: Table) -> SolidScheme:
+    """Read how solids are advanced from ``[time]``: ``solid`` and ``spectral_radius``; the rest is left to `read_time`.
+
+    Raises
+    ------
+    CaseError
+        A spectral radius for a scheme that has none.
+    """
+    default = SolidScheme()
+    name = choice(table, "solid", ("bdf2", "generalised-alpha", "energy-momentum"), default.name)
+    radius = table.number("spectral_radius", default.spectral_radius, minimum=0.0, maximum=1.0)
+    if table.has("spectral_radius") and name != "generalised-alpha":
+        raise CaseError(
+            f'time.solid = "{name}" has none; expected it with "generalised-alpha" alone. Remove it, or choose that',
+            table.place_of("spectral_radius"),
+        )
+    return SolidScheme(name, radius)
+
+
 def _divided(table: Table, time: Unsteady) -> Unsteady:
     """Read how steps are divided: with a tolerance the first ones are small unless something else is given."""
     tolerance = table.number("tolerance", None, above=0.0, below=1.0)
@@ -75,7 +95,7 @@ def _divided(table: Table, time: Unsteady) -> Unsteady:
 
 
 def _steady(table: Table) -> Steady:
-    for key in ("dt", "start", "end", "steps", "tolerance", "halvings", "first"):
+    for key in ("dt", "start", "end", "steps", "tolerance", "halvings", "first", "solid", "spectral_radius"):
         if table.has(key):
             raise CaseError("steady = true leaves no time; remove this key, or 'steady'", table.place_of(key))
     table.finish()

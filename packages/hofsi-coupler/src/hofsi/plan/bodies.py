@@ -68,6 +68,10 @@ def solid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     )
     for solid in case.solids:
         yield Item(f"solid {solid.name!r}", _material(solid, case.fluid))
+    if case.scheme.name == "generalised-alpha":
+        yield Item("solid in time", f"generalised-α method, spectral radius {case.scheme.spectral_radius:g}")
+    elif case.scheme.name == "energy-momentum":
+        yield Item("solid in time", "midpoint rule with mean strains, which keeps energy and momentum")
 
 
 def _material(solid: Solid, fluid: Fluid | None) -> str:
