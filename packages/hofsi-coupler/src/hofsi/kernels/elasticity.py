@@ -10,29 +10,37 @@ the paper's Eqs. (5)–(7). Symmetric tensors are (xx, yy, xy) on the last axis.
 with components outermost in memory, whatever the order of their axes, so that component arithmetic runs over contiguous
 data.
 
-The Lamé parameters are those of the plane problem: see `plane_lame_parameters`.
+The Lamé parameters are those of the plane problem: see `plane_lame_parameters`. `neo_hooke` has another law.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+PAIRS = ((0, 0), (0, 1), (1, 1))  # of directions on the reference square, where their order does not matter
+
 __all__ = [
+    "PAIRS",
     "body_force",
     "components_outermost",
     "deformation_gradient",
     "displacement_gradient",
+    "geometric_terms",
     "gradient_products",
     "internal_force",
     "mass",
     "plane_lame_parameters",
     "pressure_force",
     "pressure_stiffness",
+    "pulled_back",
     "quadratic_stress",
     "stiffness",
+    "stiffness_of_terms",
     "stress",
     "traction_force",
 ]
@@ -190,37 +198,81 @@ def stiffness(
     J_inv : ndarray, shape (e, q, 2, 2)
     weights : ndarray, shape (e, q)
     """
-    e, q = weights.shape
-    i = round(products[0].shape[1] ** 0.5)
-    wl, wm, wg = lame_lambda * weights, lame_mu * weights, m * weights
-    J = [[J_inv[..., c, d] for d in range(2)] for c in range(2)]
-    push = [[F[..., a, 0] * J[c][0] + F[..., a, 1] * J[c][1] for c in range(2)] for a in range(2)]  # F J_invᵀ
+    wl, wm = lame_lambda * weights, lame_mu * weights
+    push = pulled_back(F, J_inv)
     FF = [
         F[..., 0, 0] ** 2 + F[..., 0, 1] ** 2,
         F[..., 1, 0] ** 2 + F[..., 1, 1] ** 2,
         F[..., 0, 0] * F[..., 1, 0] + F[..., 0, 1] * F[..., 1, 1],
     ]
-    pairs = ((0, 0), (0, 1), (1, 1))
-    metric = [J[c][0] * J[k][0] + J[c][1] * J[k][1] for c, k in pairs]
-    geometric = [
-        wg
+    metric = [J_inv[..., c, 0] * J_inv[..., k, 0] + J_inv[..., c, 1] * J_inv[..., k, 1] for c, k in PAIRS]
+    geometric = geometric_terms(S, J_inv, m * weights)
+    return stiffness_of_terms(
+        push,
+        wl,
+        wm,
+        lambda a, n: wm * FF[a] * metric[n] + geometric[n],
+        lambda c, k: wm * (push[0][k] * push[1][c] + FF[2] * metric[c + k]),
+        products,
+    )
+
+
+def pulled_back(F: Array, J_inv: Array) -> list[list[Array]]:
+    """F J_invᵀ by components a and c, each of shape (e, q)."""
+    return [[F[..., a, 0] * J_inv[..., c, 0] + F[..., a, 1] * J_inv[..., c, 1] for c in range(2)] for a in range(2)]
+
+
+def geometric_terms(S: Array, J_inv: Array, weights: Array) -> list[Array]:
+    """Weighted stress on the reference square, J_inv S J_invᵀ, by the pairs (c, c') ξξ, ξη, ηη."""
+    J = [[J_inv[..., c, d] for d in range(2)] for c in range(2)]
+    return [
+        weights
         * (
             S[..., 0] * J[c][0] * J[k][0]
             + S[..., 1] * J[c][1] * J[k][1]
             + S[..., 2] * (J[c][0] * J[k][1] + J[c][1] * J[k][0])
         )
-        for c, k in pairs
+        for c, k in PAIRS
     ]
+
+
+def stiffness_of_terms(
+    push: list[list[Array]],
+    wl: Array,
+    wm: Array,
+    same: Callable[[int, int], Array],
+    mixed: Callable[[int, int], Array],
+    products: tuple[Array, Array],
+) -> Array:
+    """Element matrices of what laws have in common, shape (e, 2 i, 2 j).
+
+    ∫ (λ g_ac g_bc' + s_abcc') ∂_c N_i ∂_c' N_j, plus μ g_ac g_ac' where a = b, with the weighted coefficients λ and μ.
+
+    Parameters
+    ----------
+    push : list of list of ndarray
+        g, by a and c.
+    wl, wm : ndarray, shape (e, q)
+        λ and μ.
+    same : callable
+        s where a = b, from a and the number of the pair (c, c') in `PAIRS`.
+    mixed : callable
+        s where a = 0, b = 1, from c and c'.
+    products : pair of ndarray
+        From `gradient_products`.
+    """
+    e, q = wl.shape
+    i = round(products[0].shape[1] ** 0.5)
     K = np.empty((e, i, 2, i, 2))
     T = np.empty((e, 3, q))
     for a in range(2):
-        for n, (c, k) in enumerate(pairs):
-            T[:, n] = (wl + wm) * push[a][c] * push[a][k] + wm * FF[a] * metric[n] + geometric[n]
+        for n, (c, k) in enumerate(PAIRS):
+            T[:, n] = (wl + wm) * push[a][c] * push[a][k] + same(a, n)
         K[:, :, a, :, a] = (T.reshape(e, -1) @ products[0]).reshape(e, i, i)
     T = np.empty((e, 4, q))
     for c in range(2):
         for k in range(2):
-            T[:, 2 * c + k] = wl * push[0][c] * push[1][k] + wm * (push[0][k] * push[1][c] + FF[2] * metric[c + k])
+            T[:, 2 * c + k] = wl * push[0][c] * push[1][k] + mixed(c, k)
     xy = (T.reshape(e, -1) @ products[1]).reshape(e, i, i)
     K[:, :, 0, :, 1] = xy
     K[:, :, 1, :, 0] = xy.transpose(0, 2, 1)
