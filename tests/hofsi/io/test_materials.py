@@ -34,6 +34,7 @@ def test_words() -> None:
     assert fluid(model="stokes").model == "stokes"
     assert fluid(convection="picard").convection == "picard"
     assert solid(model="linear").model == "linear"
+    assert solid(model="neo-hooke").model == "neo-hooke"
     assert solid(plane="stress").plane == "stress"
 
 
@@ -98,7 +99,8 @@ def test_mistakes_of_the_fluid(changes: dict[str, Any], match: str) -> None:
         ({"youngs_modulus": -1e6}, r"solid\[1\].youngs_modulus: got -1000000.0"),
         ({"poissons_ratio": 0.5}, r"solid\[1\].poissons_ratio: got 0.5; expected a number above -1 and below 0.5"),
         ({"poissons_ratio": -1}, r"solid\[1\].poissons_ratio: got -1"),
-        ({"model": "neo-hooke"}, r"solid\[1\].model: got 'neo-hooke'"),
+        ({"model": "neo-hook"}, r"solid\[1\].model: got 'neo-hook'. Did you mean 'neo-hooke'"),
+        ({"model": "mooney-rivlin"}, r"solid\[1\].model: got 'mooney-rivlin'. .*'neo-hooke', 'linear'"),
         ({"plane": "Strain"}, r"solid\[1\].plane: got 'Strain'. Did you mean 'strain'"),
         ({"name": 3}, r"solid\[1\].name: got the number 3"),
         ({"young": 3}, r"solid\[1\].young: unknown key"),

@@ -165,7 +165,9 @@ def ring_displacement(r, p, a, b, outer_fixed):
     return A * r + B / r
 
 
-@pytest.mark.parametrize(("model", "p", "tolerance"), [("linear", 5.0, 1e-8), ("st-venant-kirchhoff", 1e-5, 1e-6)])
+@pytest.mark.parametrize(
+    ("model", "p", "tolerance"), [("linear", 5.0, 1e-8), ("st-venant-kirchhoff", 1e-5, 1e-6), ("neo-hooke", 1e-5, 1e-6)]
+)
 @pytest.mark.parametrize("outer_fixed", [False, True])
 def test_pressure_on_an_arc_gives_lames_ring(model, p, tolerance, outer_fixed):
     mesh = quarter_ring(6, 3, 2)
@@ -290,7 +292,7 @@ def test_csm1_of_turek_and_hron():
     np.testing.assert_allclose(state.displacement[tip], [-7.18777e-3, -6.61029e-2], rtol=5e-4)
 
 
-@pytest.mark.parametrize("model", ["linear", "st-venant-kirchhoff"])
+@pytest.mark.parametrize("model", ["linear", "st-venant-kirchhoff", "neo-hooke"])
 def test_multigrid_bends_the_flag_as_factors_do(model):
     pytest.importorskip("pyamg")
     given = load_case(EXAMPLES / "csm1.toml")
@@ -370,7 +372,7 @@ def test_load_that_is_not_finite_is_reported():
     assert caught.value.reason == "diverged"
 
 
-@pytest.mark.parametrize("model", ["linear", "st-venant-kirchhoff"])
+@pytest.mark.parametrize("model", ["linear", "st-venant-kirchhoff", "neo-hooke"])
 def test_solid_without_support_is_reported(model):
     s = solver(rectangle(1, 2, 1), [], body_force=pair(1, 0), model=model)
     with pytest.raises(CaseError, match=r"solid\[0\].boundary: solid 'block' is not held: it can move anywhere"):

@@ -68,7 +68,7 @@ def test_the_clamp_of_csm1_carries_the_weight_of_the_flag():
     assert found["none"] == 0.0
 
 
-@pytest.mark.parametrize("model", ["linear", "st-venant-kirchhoff"])
+@pytest.mark.parametrize("model", ["linear", "st-venant-kirchhoff", "neo-hooke"])
 def test_momentum_is_balanced_in_every_step(model):
     pull = case.Traction(("right",), expression("10*sin(3*t)"), expression("-5*t"))
     mesh = rectangle()

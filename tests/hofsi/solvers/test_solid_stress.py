@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from hoblock import Arc, BlockStructure, generate
 from hofsi.case import Solid
@@ -45,6 +46,22 @@ def test_stress_of_a_homogeneous_deformation(mesh, model, plane):
     sigma = F @ S @ F.T / np.linalg.det(F)
     expected = [sigma[0, 0], sigma[1, 1], across / np.linalg.det(F), sigma[0, 1]]
     found = SolidStress(mesh, [_solid(model=model, plane=plane)]).cauchy(mesh.points @ G.T)
+    np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_stress_of_a_neo_hookean_solid(mesh, plane):
+    """σ = (μ (b - I) + λ ln J I)/J in all three directions."""
+    F = np.eye(3)
+    F[:2, :2] += G
+    if plane == "stress":
+        across = brentq(lambda a: MU * (a**2 - 1.0) + LAME * np.log(a * np.linalg.det(F)), 0.1, 10.0, xtol=1e-15)
+        F[2, 2] = across
+    J = np.linalg.det(F)
+    sigma = (MU * (F @ F.T - np.eye(3)) + LAME * np.log(J) * np.eye(3)) / J
+    expected = [sigma[0, 0], sigma[1, 1], sigma[2, 2], sigma[0, 1]]
+    assert (abs(sigma[2, 2]) < 1e-13) == (plane == "stress")
+    found = SolidStress(mesh, [_solid(model="neo-hooke", plane=plane)]).cauchy(mesh.points @ G.T)
     np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), rtol=0, atol=1e-12)
 
 

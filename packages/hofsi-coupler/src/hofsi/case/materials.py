@@ -97,7 +97,7 @@ class Solid:
         Block groups of the mesh.
     boundaries : tuple of SolidCondition
         Exactly one for each dry outer edge; on edges shared with the fluid at most one traction or pressure.
-    model : {"st-venant-kirchhoff", "linear"}
+    model : {"st-venant-kirchhoff", "neo-hooke", "linear"}
     plane : {"strain", "stress"}
     body_force : pair of Expression of x, y (reference), t, or None
         Per unit reference volume, gravity included; None is zero.
@@ -112,7 +112,7 @@ class Solid:
     poissons_ratio: float
     blocks: tuple[str, ...]
     boundaries: tuple[SolidCondition, ...]
-    model: Literal["st-venant-kirchhoff", "linear"] = "st-venant-kirchhoff"
+    model: Literal["st-venant-kirchhoff", "neo-hooke", "linear"] = "st-venant-kirchhoff"
     plane: Literal["strain", "stress"] = "strain"
     body_force: VectorExpression | None = None
     initial_displacement: VectorExpression | None = None

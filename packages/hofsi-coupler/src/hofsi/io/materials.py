@@ -67,7 +67,7 @@ def read_solid(table: Table, mesh: MeshScene, constants: Mapping[str, float]) ->
         poissons_ratio=table.number("poissons_ratio", above=-1.0, below=0.5),
         blocks=block_groups(table, mesh, "solid"),
         boundaries=tuple(read_solid_condition(entry, mesh, constants) for entry in table.tables("boundary")),
-        model=choice(table, "model", ("st-venant-kirchhoff", "linear"), "st-venant-kirchhoff"),
+        model=choice(table, "model", ("st-venant-kirchhoff", "neo-hooke", "linear"), "st-venant-kirchhoff"),
         plane=choice(table, "plane", ("strain", "stress"), "strain"),
         body_force=_body_force(table, constants, density),
         initial_displacement=_initial(table, "initial_displacement", constants),

@@ -167,9 +167,12 @@ def mean_stress(H: Array, start: Array, lame_lambda: Array, lame_mu: Array, *, p
         S = S(C̄) + (2 ΔW - S(C̄):ΔC)/(ΔC:ΔC) ΔC.
 
     The numerator is of third order in ΔC. It is written in terms that are small themselves, so that nothing is lost
-    where ΔC is small: with x = (det C₁ - det C₀)/(det C₁ + det C₀), τ = det ΔC/(4 det C̄), and the changes ℓ of ln J₂ from
-    C̄ to the ends, ℓ₁ - ℓ₀ = artanh x, it is 2 (μ - p̄) (x τ + x - artanh x) + 2 (v(ℓ₁) - v(ℓ₀)), where v is the part of W
-    in ln J less its linearisation about C̄.
+    where ΔC is small. With x = (det C₁ - det C₀)/(det C₁ + det C₀), τ = det ΔC/(4 det C̄) and the changes ℓ of ln J₂
+    from C̄ to the ends, ℓ₁ - ℓ₀ = artanh x, it is
+
+        2 (μ - p̄) (x τ + x - artanh x) + 2 (v(ℓ₁) - v(ℓ₀)),
+
+    where v is the part of W in ln J less its linearisation about C̄.
 
     Parameters
     ----------

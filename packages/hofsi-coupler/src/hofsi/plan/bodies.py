@@ -15,7 +15,7 @@ from hofsi.plan.sizes import condensed_fluid, condensed_solid, linear_solvers, p
 
 __all__ = ["fluid_items", "solid_items"]
 
-_LAWS = {"linear": "linear elasticity", "st-venant-kirchhoff": "St. Venant–Kirchhoff"}
+_LAWS = {"linear": "linear elasticity", "st-venant-kirchhoff": "St. Venant–Kirchhoff", "neo-hooke": "neo-Hookean"}
 _MODELS = {"navier-stokes": "Navier–Stokes", "stokes": "Stokes"}
 
 

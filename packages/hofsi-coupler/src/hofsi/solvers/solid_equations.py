@@ -15,6 +15,7 @@ from hofsi.fem.assembly import MatrixPattern, assemble_vector
 from hofsi.fem.element import ElementTable, boundary_first, element_table
 from hofsi.fem.geometry import element_geometry
 from hofsi.kernels import elasticity as kernel
+from hofsi.solvers.solid_laws import SolidLaws
 from hofsi.solvers.solid_loads import FollowerPressure, SolidLoads
 
 Array = NDArray[np.float64]
@@ -46,7 +47,7 @@ class SolidEquations:
     mass : csr_matrix, shape (n, n)
         Consistent mass matrix, the same for both components.
     m : ndarray, shape (e, 1)
-        1 for St. Venant–Kirchhoff, 0 for linear solids.
+        0 for linear solids, 1 for the others.
     loads : SolidLoads
     """
 
@@ -63,7 +64,11 @@ class SolidEquations:
         self._weights = geometry.weights
         self._J_inv = kernel.components_outermost(geometry.J_inv)
         self._products = kernel.gradient_products(self._dN)
-        self._lame_lambda, self._lame_mu, self.m, density = _materials(len(mesh.cells), solids, self.cells_of)
+        self._laws = SolidLaws(len(mesh.cells), solids, self.cells_of)
+        self.m = self._laws.m
+        density = np.empty((len(mesh.cells), 1))
+        for solid, own in zip(solids, self.cells_of, strict=True):
+            density[own] = solid.density
         self.linear = not self.m.any()
         self.dofs = (2 * self._cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
         self.boundary = 2 * on_boundary
@@ -78,7 +83,7 @@ class SolidEquations:
 
     def stress(self, gradient: Array) -> Array:
         """Second Piola–Kirchhoff stress, shape (e, q, 3): xx, yy, xy."""
-        return kernel.stress(gradient, self._lame_lambda, self._lame_mu, self.m)
+        return self._laws.stress(gradient)
 
     def first_stress(self, displacement: Array, element: int, table: ElementTable) -> Array:
         """First Piola–Kirchhoff stress F S in one element at some points, shape (q, a, d).
@@ -93,13 +98,35 @@ class SolidEquations:
         own, nodes = slice(element, element + 1), self.mesh.cells[[element]]
         J_inv = element_geometry(self.mesh.points[nodes], table).J_inv
         H = kernel.displacement_gradient(displacement[nodes], table.dN, J_inv)
-        S = kernel.stress(H, self._lame_lambda[own], self._lame_mu[own], self.m[own])[0]
+        S = self._laws.of_element(element).stress(H)[0]
         F = kernel.deformation_gradient(H, self.m[own])[0]
         return np.asarray(F @ np.stack([S[:, [0, 2]], S[:, [2, 1]]], axis=-2))
 
-    def quadratic_stress(self, gradient: Array) -> Array:
-        """Stress of the quadratic part of an increment's strain, shape (e, q, 3)."""
-        return kernel.quadratic_stress(gradient, self._lame_lambda, self._lame_mu, self.m)
+    def mean_stress(self, gradient: Array, start: Array) -> Array:
+        """Stress of a midpoint step that keeps the energy, shape (e, q, 3).
+
+        Of St. Venant–Kirchhoff solids it is that of the mean of the strains at both ends.
+
+        Parameters
+        ----------
+        gradient, start : ndarray, shape (e, q, 2, 2)
+            In the middle of the step, and at its start.
+        """
+        return self._laws.mean_stress(gradient, start)
+
+    def linearised_stress(self, gradient: Array, stress: Array, increment: Array, new: Array) -> Array:
+        """Stress after an increment without what is of higher order in it, shape (e, q, 3).
+
+        Parameters
+        ----------
+        gradient, stress : ndarray
+            Before the increment.
+        increment : ndarray, shape (e, q, 2, 2)
+            Of the gradient.
+        new : ndarray, shape (e, q, 3)
+            The stress after it.
+        """
+        return self._laws.linearised_stress(gradient, stress, increment, new)
 
     def internal_force(self, gradient: Array, stress: Array) -> Array:
         """Nodal internal forces, shape (n, 2)."""
@@ -119,8 +146,7 @@ class SolidEquations:
         """
         steep, near = np.abs(self._dN), np.abs(self._J_inv)
         error = kernel.displacement_gradient(np.abs(displacement)[self._cells], steep, near).max(axis=(2, 3))
-        stiffness = self._lame_lambda + 2.0 * self._lame_mu
-        size = stiffness * error * (1.0 + self.m * np.abs(gradient).max(axis=(2, 3))) ** 2
+        size = self._laws.plane_modulus * error * (1.0 + self.m * np.abs(gradient).max(axis=(2, 3))) ** 2
         S = np.stack([size, size, np.zeros_like(size)], axis=-1)
         F = kernel.deformation_gradient(gradient, np.zeros_like(self.m))
         f = kernel.internal_force(F, S, steep, near, self._weights)
@@ -139,10 +165,7 @@ class SolidEquations:
         mass_factor : float
         pressures : sequence of FollowerPressure
         """
-        F = kernel.deformation_gradient(gradient, self.m)
-        K = kernel.stiffness(
-            F, stress, self._lame_lambda, self._lame_mu, self.m, self._products, self._J_inv, self._weights
-        )
+        K = self._laws.stiffness(gradient, stress, self._products, self._J_inv, self._weights)
         if mass_factor:
             inertia = mass_factor * self._element_mass
             K[:, 0::2, 0::2] += inertia
@@ -194,15 +217,3 @@ def _cells_of(mesh: QuadMesh, solids: Sequence[case.Solid]) -> list[Index]:
             solids[0].place if solids else "solid",
         )
     return cells
-
-
-def _materials(count: int, solids: Sequence[case.Solid], cells: Sequence[Index]) -> tuple[Array, Array, Array, Array]:
-    """λ, μ, m and ρ of each element, each of shape (e, 1)."""
-    values = np.empty((4, count, 1))
-    for solid, own in zip(solids, cells, strict=True):
-        lame, mu = kernel.plane_lame_parameters(
-            solid.youngs_modulus, solid.poissons_ratio, stress=solid.plane == "stress"
-        )
-        following = 0.0 if solid.model == "linear" else 1.0
-        values[:, own] = np.array([lame, mu, following, solid.density])[:, None, None]
-    return values[0], values[1], values[2], values[3]

@@ -137,7 +137,7 @@ class EdgeLoads:
     conditions : sequence of (Traction or Pressure, ndarray of shape (k, 2))
         With the element sides they act on.
     m : ndarray, shape (e, 1)
-        1 for St. Venant–Kirchhoff, 0 for linear solids.
+        0 for linear solids, 1 for the others.
     count : int
         Quadrature points on a side.
 
@@ -199,7 +199,7 @@ class SolidLoads:
     geometry : Geometry
         Of all elements at ``count`` × ``count`` points.
     m : ndarray, shape (e, 1)
-        1 for St. Venant–Kirchhoff, 0 for linear solids.
+        0 for linear solids, 1 for the others.
     count : int
         Quadrature points on a side.
     """

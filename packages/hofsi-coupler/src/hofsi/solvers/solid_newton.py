@@ -89,9 +89,10 @@ class SolidNewton:
     tangent : Tangent, optional
         To begin with.
     mean_with : ndarray, shape (e, q, 2, 2), optional
-        Displacement gradient of the start of a step whose d is that of its middle: the stress is then that of the mean
-        of the strains at start and end, E(d) + Δᵀ Δ/2 with the difference Δ between d and the start. The tangent leaves
-        out what depends on Δ; convergence is linear, and fast for small steps.
+        Displacement gradient of the start of a step whose d is that of its middle: the stress is then the one that
+        keeps the energy. With the difference Δ between d and the start, it belongs to the mean of the strains at start
+        and end, E(d) + Δᵀ Δ/2. The tangent leaves out what depends on Δ; convergence is linear, and fast for small
+        steps.
 
     Attributes
     ----------
@@ -209,9 +210,8 @@ class SolidNewton:
         eq = self._equations
         gradient = eq.gradient(displacement)
         with np.errstate(over="ignore", invalid="ignore"):
-            stress = eq.stress(gradient)
-            if self._mean_with is not None:
-                stress = stress + eq.quadratic_stress(gradient - self._mean_with)
+            start = self._mean_with
+            stress = eq.stress(gradient) if start is None else eq.mean_stress(gradient, start)
             internal = eq.internal_force(gradient, stress)
             external = force
             if self._pressures:
@@ -251,7 +251,8 @@ class SolidNewton:
                 poor = True  # the iterate is given up, not only the tangent
                 continue
             poor = self._too_slow(rate, trial, tolerance)
-            geometric = trial.stress - self._equations.quadratic_stress(self._equations.gradient(increment))
+            change = self._equations.gradient(increment)
+            geometric = self._equations.linearised_stress(point.gradient, point.stress, change, trial.stress)
             point, moving, fresh = trial, False, False
         raise self._error(
             f"Newton's method stopped at a relative residual of {point.norm / point.scale:.2g} after "

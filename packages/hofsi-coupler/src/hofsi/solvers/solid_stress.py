@@ -13,6 +13,7 @@ from hofsi import case
 from hofsi.fem.element import ElementTable
 from hofsi.fem.geometry import element_geometry
 from hofsi.kernels import elasticity as kernel
+from hofsi.solvers.solid_laws import SolidLaws
 
 Array = NDArray[np.float64]
 
@@ -38,18 +39,11 @@ class SolidStress:
         )
         self._J_inv = element_geometry(mesh.coordinates, self._table).J_inv
         self._share = 1.0 / np.bincount(mesh.cells.ravel(), minlength=len(mesh.points))
-        parameters = np.empty((4, len(mesh.cells), 1))
-        for solid in solids:
-            cells = np.concatenate([mesh.cell_groups[name] for name in solid.blocks])
-            stress = solid.plane == "stress"
-            lame, mu = kernel.plane_lame_parameters(solid.youngs_modulus, solid.poissons_ratio, stress=stress)
-            across = 0.0 if stress else lame / (2.0 * (lame + mu))  # S_zz/(S_xx + S_yy)
-            following = 0.0 if solid.model == "linear" else 1.0
-            parameters[:, cells] = np.array([lame, mu, following, across])[:, None, None]
-        self._lame_lambda, self._lame_mu, self._m, self._across = parameters
+        cells = [np.unique(np.concatenate([mesh.cell_groups[name] for name in solid.blocks])) for solid in solids]
+        self._laws = SolidLaws(len(mesh.cells), solids, cells)
 
     def cauchy(self, displacement: Array) -> Array:
-        """Cauchy stress F S Fᵀ/det F at the nodes.
+        """Cauchy stress F S Fᵀ/J at the nodes.
 
         Parameters
         ----------
@@ -58,18 +52,18 @@ class SolidStress:
         Returns
         -------
         ndarray, shape (n, 4)
-            xx, yy, zz, xy. That of linear solids is the stress of their law; in plane stress it is referred to the
-            undeformed thickness.
+            xx, yy, zz, xy. That of linear solids is the stress of their law; in plane stress that of St.
+            Venant–Kirchhoff solids is referred to the undeformed thickness, that of neo-Hookean ones to their own.
         """
         mesh = self._mesh
         H = kernel.displacement_gradient(displacement[mesh.cells], self._table.dN, self._J_inv)
-        S = kernel.stress(H, self._lame_lambda, self._lame_mu, self._m)
-        F = kernel.deformation_gradient(H, self._m)
-        det_F = F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]
+        S = self._laws.stress(H)
+        F = kernel.deformation_gradient(H, self._laws.m)
+        across, thickness = self._laws.out_of_plane(H, S)
+        J = thickness * (F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0])
         tensor = np.stack([S[..., [0, 2]], S[..., [2, 1]]], axis=-2)
         pushed = F @ tensor @ F.swapaxes(-1, -2)
-        across = self._across * (S[..., 0] + S[..., 1])
-        sigma = np.stack([pushed[..., 0, 0], pushed[..., 1, 1], across, pushed[..., 0, 1]], axis=-1) / det_F[..., None]
+        sigma = np.stack([pushed[..., 0, 0], pushed[..., 1, 1], across, pushed[..., 0, 1]], axis=-1) / J[..., None]
         result = np.zeros((len(mesh.points), 4))
         np.add.at(result, mesh.cells, sigma)
         return result * self._share[:, None]

@@ -34,7 +34,8 @@ class MotionStep:
     velocity_factor, acceleration_factor : float
     velocity_history, acceleration_history : ndarray, shape (n, 2)
     averaged : bool
-        Whether the stress at the point is that of the mean of the strains at both ends, not that of the strain there.
+        Whether the stress at the point is that of the mean of the strains at both ends, corrected where the law needs it,
+        not that of the strain there.
     """
 
     start: Array
@@ -123,7 +124,7 @@ def generalised_alpha(
 
 
 def midpoint(displacement: Array, velocity: Array, step: float) -> MotionStep:
-    """The midpoint rule with the stress of the mean strain: keeps energy and momentum of St. Venant–Kirchhoff solids.
+    """The midpoint rule with the stress of the mean strain: keeps energy and momentum of nonlinear solids.
 
     The acceleration is that of the midpoint.
 
