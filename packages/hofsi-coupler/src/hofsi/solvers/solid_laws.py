@@ -32,7 +32,7 @@ class _Law(Protocol):
 
     def stiffness(self, H: Array, S: Array, products: tuple[Array, Array], J_inv: Array, weights: Array) -> Array: ...
 
-    def part(self, cells: Cells) -> _Law: ...
+    def part(self, cells: slice) -> _Law: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class _Hooke:
         F = elasticity.deformation_gradient(H, self.m)
         return elasticity.stiffness(F, S, self.lame_lambda, self.lame_mu, self.m, products, J_inv, weights)
 
-    def part(self, cells: Cells) -> _Hooke:
+    def part(self, cells: slice) -> _Hooke:
         return _Hooke(self.lame_lambda[cells], self.lame_mu[cells], self.m[cells], self.across[cells])
 
 
@@ -104,7 +104,7 @@ class _NeoHooke:
         parameters = self.lame_lambda, self.lame_mu
         return neo_hooke.stiffness(H, S, *parameters, products, J_inv, weights, plane_stress=self.plane_stress)
 
-    def part(self, cells: Cells) -> _NeoHooke:
+    def part(self, cells: slice) -> _NeoHooke:
         return _NeoHooke(self.lame_lambda[cells], self.lame_mu[cells], self.plane_stress)
 
 
@@ -145,8 +145,11 @@ class SolidLaws:
             kinds.setdefault(kind, []).append(own)
         values[3] = self.m
         self._groups: list[tuple[Cells, _Law]] = []
-        for kind, members in kinds.items():
-            group = slice(None) if len(kinds) == 1 else _as_slice(np.sort(np.concatenate(members)))
+        self._owner, self._position = np.empty((2, count), dtype=np.int64)
+        for number, (kind, members) in enumerate(kinds.items()):
+            numbers = np.sort(np.concatenate(members))
+            self._owner[numbers], self._position[numbers] = number, np.arange(len(numbers))
+            group = slice(None) if len(kinds) == 1 else _as_slice(numbers)
             lame_lambda, lame_mu, across_ratio, m = values[:, group]
             law = (
                 _Hooke(lame_lambda, lame_mu, m, across_ratio)
@@ -157,14 +160,9 @@ class SolidLaws:
 
     def of_element(self, element: int) -> _Law:
         """The law of one element alone."""
-        for group, law in self._groups:
-            if isinstance(group, slice):
-                start, stop, _ = group.indices(len(self.m))
-                if start <= element < stop:
-                    return law.part(slice(element - start, element - start + 1))
-            elif (found := np.flatnonzero(group == element)).size:
-                return law.part(found)
-        raise IndexError(f"there is no element {element}.")
+        _, law = self._groups[int(self._owner[element])]
+        position = int(self._position[element])
+        return law.part(slice(position, position + 1))
 
     def stress(self, H: Array) -> Array:
         """Second Piola–Kirchhoff stress of a displacement gradient (e, q, 2, 2), shape (e, q, 3)."""

@@ -34,8 +34,8 @@ class MotionStep:
     velocity_factor, acceleration_factor : float
     velocity_history, acceleration_history : ndarray, shape (n, 2)
     averaged : bool
-        Whether the stress at the point is that of the mean of the strains at both ends, corrected where the law needs it,
-        not that of the strain there.
+        Whether the stress at the point is that of the mean of the strains at both ends, corrected where the law needs
+        it, not that of the strain there.
     """
 
     start: Array
