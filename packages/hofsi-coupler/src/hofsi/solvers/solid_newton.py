@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 __all__ = ["SolidNewton", "Tangent"]
 
 _PATIENCE = 8.0  # more iterations than this with an old tangent cost more than a new one
+_HALVINGS = 5  # of an increment that leads where the stress is not finite: neo-Hookean solids turned inside out
 _SMALLEST_PART = 2.0**-10  # of the load, in continuation
 _ROUNDING = 0.25  # of the estimated rounding error, which measured residuals reach between a fiftieth and a seventh
 
@@ -245,6 +246,11 @@ class SolidNewton:
                 fresh = True
             increment = self._increment(self.tangent, point, offset, movement if moving else None)
             trial = self._at(point.displacement + increment, force, offset)
+            for _ in range(0 if moving else _HALVINGS):
+                if trial.finite:
+                    break
+                increment = 0.5 * increment
+                trial = self._at(point.displacement + increment, force, offset)
             self._counts.iterations += 1
             rate = np.inf if moving or point.norm == 0.0 else trial.norm / point.norm
             if not (fresh or moving or self._equations.linear or rate < 1.0):
