@@ -87,3 +87,12 @@ def test_a_contradicting_secant_of_an_earlier_step_is_not_amplified():
     accelerator.begin_step()
     off = accelerator.next(np.array([2.0, 0.0]), np.array([0.0, 1e-3]))
     assert np.linalg.norm(off - last) < 0.05  # 0.4 by least squares alone, through the difference of the slopes
+
+
+def test_what_is_forgotten_does_not_help_later_steps():
+    A, b, exact = problem(12, 12)
+    fresh, reused = InverseLeastSquares(5, 1e-8, 0.5), InverseLeastSquares(5, 1e-8, 0.5)
+    iterations(reused, A, b, exact)
+    reused.forget()
+    assert reused.columns == 0
+    assert iterations(reused, A, 2.0 * b, 2.0 * exact) == iterations(fresh, A, 2.0 * b, 2.0 * exact)

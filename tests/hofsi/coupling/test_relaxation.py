@@ -38,3 +38,11 @@ def test_aitken_converges_where_plain_iteration_diverges():
     exact = np.linalg.solve(np.eye(3) - A, b)
     d = iterate(Aitken(0.2), lambda d: A @ d + b, np.zeros(3), 60)
     np.testing.assert_allclose(d, exact, atol=1e-8)
+
+
+def test_aitken_that_forgets_begins_with_the_first_factor():
+    aitken = Aitken(0.3)
+    iterate(aitken, lambda d: -9.0 * d + 1.0, np.array([0.0]), 4)  # the factor has fallen to a tenth
+    aitken.forget()
+    aitken.begin_step()
+    np.testing.assert_allclose(aitken.next(np.array([0.0]), np.array([1.0])), 0.3)

@@ -207,6 +207,21 @@ class CoupledMarch:
         where: str,
         share: float = 1.0,
     ) -> tuple[_Fields, CouplingRecord]:
+        """Fixed-point iteration d ↦ d̃ with acceleration; one that fails takes the accelerator's memory with it."""
+        try:
+            return self._iterated(d, flow, solid_step, where, share)
+        except ConvergenceError:
+            self._accelerator.forget()
+            raise
+
+    def _iterated(
+        self,
+        d: Array,
+        flow: Callable[[Array], tuple[FluidStep, MeshState]],
+        solid_step: SolidStep,
+        where: str,
+        share: float,
+    ) -> tuple[_Fields, CouplingRecord]:
         """Fixed-point iteration d ↦ d̃ with acceleration, under a share of the fluid's load."""
         settings, interface = self._settings, self._interface
         self._accelerator.begin_step()

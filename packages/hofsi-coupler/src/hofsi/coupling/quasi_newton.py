@@ -97,6 +97,10 @@ class InverseLeastSquares:
                 return keep
             keep[weak[0]] = False  # the newest of them; those behind it may stand without it
 
+    def forget(self) -> None:
+        """Drop all columns."""
+        self._steps, self._current, self._last = [], [], None
+
     def end_step(self) -> None:
         """Keep the step's columns and forget the oldest step."""
         self._steps = [self._current, *self._steps][: self._reuse]

@@ -27,6 +27,10 @@ class Accelerator(Protocol):
         """Keep what later steps may use of this one, which has converged."""
         ...
 
+    def forget(self) -> None:
+        """Start anew: the step did not converge, and what was kept of earlier ones may be why."""
+        ...
+
 
 class ConstantRelaxation:
     """d + ω r with a constant ω."""
@@ -43,6 +47,9 @@ class ConstantRelaxation:
 
     def end_step(self) -> None:
         """Nothing to keep."""
+
+    def forget(self) -> None:
+        """Nothing to forget."""
 
 
 class Aitken:
@@ -74,3 +81,7 @@ class Aitken:
 
     def end_step(self) -> None:
         """Nothing to keep but the factor."""
+
+    def forget(self) -> None:
+        """Start the next step from the given factor."""
+        self._factor, self._last = self._first, None
