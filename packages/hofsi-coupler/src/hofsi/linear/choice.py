@@ -10,10 +10,10 @@ from typing import Literal
 
 __all__ = ["Choice", "choose_solver", "direct_memory", "machine_memory"]
 
-_OVERTAKEN = 3_000_000
-"""Condensed unknowns from which a solution by multigrid takes less time than one by LU.
+_OVERTAKEN = 1_500_000
+"""Condensed unknowns from which a solution by multigrid takes less time than one by LU, preparation included.
 
-Carried on from measurements up to 930 000, see docs/linear_solvers.md.
+Between 900 000 and 1 500 000 it depends on the order and the problem, see docs/linear_solvers.md.
 """
 
 _ENTRIES = 27.0
