@@ -287,3 +287,15 @@ def test_nothing_heavy_is_imported(tmp_path: Path, flap: str) -> None:
 def test_the_plan_says_that_periodic_sides_need_a_direct_solver(read_changed: Read, periodic_channel: str) -> None:
     planned = plan(read_changed(text=periodic_channel))
     assert _built(planned, "fluid's linear solver").endswith("; there is no multigrid for periodic sides")
+
+
+def test_a_solid_alone_is_not_said_to_take_backward_differences_if_it_does_not(
+    read_changed: Callable[..., Case], solid_alone: str
+) -> None:
+    items = {}
+    for scheme in ("bdf2", "energy-momentum"):
+        found = plan(read_changed(("[time]", f'[time]\nsolid = "{scheme}"'), text=solid_alone))
+        items[scheme] = {item.name: item.detail for item in found.built}
+    assert "backward differences" in items["bdf2"]["time"]
+    assert "backward differences" not in items["energy-momentum"]["time"]
+    assert "midpoint rule" in items["energy-momentum"]["solid in time"]

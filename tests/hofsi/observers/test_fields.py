@@ -179,3 +179,12 @@ def test_records_are_only_read(read_changed: Read, tmp_path: Path) -> None:
 def test_a_number_of_steps_must_be_positive(read_changed: Read, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"every: got 0; expected a number of steps, at least 1"):
         FieldWriter(build(read_changed(FIVE)), tmp_path, 0)
+
+
+def test_parts_of_divided_steps_do_not_count(read_changed: Read, tmp_path: Path) -> None:
+    problem = build(read_changed(("dt = 0.1\nend = 2.0", "dt = 0.1\nsteps = 4\nfirst = 0.025")))
+    writer = FieldWriter(problem, tmp_path, 2)
+    records = list(_observed(problem, writer))
+    writer.close()
+    assert len(records) > 4
+    assert [time for time, _ in _series(tmp_path / "fluid.pvd")] == pytest.approx([0.2, 0.4])

@@ -93,3 +93,16 @@ def test_a_steady_state_has_no_time() -> None:
 def test_nothing_is_shown_without_a_step(stream: io.StringIO) -> None:
     Progress(stream, 5).close()
     assert stream.getvalue() == ""
+
+
+def test_parts_of_divided_steps_are_parts_of_the_time_left() -> None:
+    stream, clock = io.StringIO(), Hand()
+    progress = Progress(stream, 10, clock=clock)
+    for number, done in enumerate((0.5, 1.0, 1.5), start=1):
+        clock.now += 3.0
+        progress.observe(StepRecord(number, 0.1 * done, 0.05, State(), done=done))
+    progress.close()
+    lines = stream.getvalue().splitlines()
+    assert lines[0].startswith("step 0.50/10")
+    assert lines[-1].startswith("step 1.50/10")
+    assert lines[-1].endswith("51 s left")  # 8.5 steps of 6 s

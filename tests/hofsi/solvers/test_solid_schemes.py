@@ -195,3 +195,15 @@ def test_a_load_of_the_fluid_acts_at_the_point_of_equilibrium(scheme):
     exact = states[-1].time ** 2 / 2.0
     late = states[-1].velocity[:, 1] - states[0].velocity[:, 1]
     assert late == pytest.approx(exact - 0.1**2 / 2.0, rel=2e-2)
+
+
+def test_a_constant_pressure_acts_once():
+    """The initial acceleration takes it too, and leaves the loads that are kept as they are."""
+    pressed = case.Pressure(("bottom",), expression("2"))
+    solver = block("generalised-alpha", (pressed,), body_force=(expression("0"), expression("0")))
+    acceleration = solver.initial_state().accelerations[0]
+    np.testing.assert_allclose((solver.equations.mass @ acceleration).sum(axis=0), [0.0, 4.0], atol=1e-10)
+    assert not solver.equations.loads.dead(0.0).any()
+    state = march(solver, (1e-3,))[-1]
+    momentum = (solver.equations.mass @ state.velocity).sum(axis=0)
+    np.testing.assert_allclose(momentum, [0.0, 4e-3], atol=1e-6)

@@ -17,12 +17,12 @@ def time_items(case: Case) -> Iterator[Item]:
         time = case.time
         last = time.step(time.steps)[1]
         shorter = "" if last == time.dt else f", the last of {last:g},"
-        order = "first order" if time.steps == 1 else "second order (the first step: of first)"
-        yield Item(
-            "time",
-            f"{counted(time.steps, 'step')} of {time.dt:g}{shorter} from {time.start:g} to {time.end:g}, "
-            f"backward differences of {order}",
-        )
+        scheme = ""
+        if case.fluid is not None or case.scheme.name == "bdf2":
+            order = "first order" if time.steps == 1 else "second order (the first step: of first)"
+            scheme = f", backward differences of {order}"
+        steps = f"{counted(time.steps, 'step')} of {time.dt:g}{shorter} from {time.start:g} to {time.end:g}"
+        yield Item("time", steps + scheme)
         if time.halvings:
             yield Item("smaller steps", _divisions(time))
     else:

@@ -72,7 +72,9 @@ def _without_iteration(case: Case, solvers: Mapping[str, Choice]) -> Iterator[It
     if all(choice.solver == "direct" for choice in solvers.values()):
         yield Item("multigrid", "LU serves" if case.linear.solver == "auto" else 'linear.solver = "direct"')
     if case.solids and all(solid.model == "linear" for solid in case.solids):
-        yield Item("solid's Newton iteration", f"linear: factorised {_once(case)}")
+        one_step = isinstance(case.time, Unsteady) and case.time.tolerance is None and case.time.first is None
+        often = "once" if case.scheme.name != "bdf2" and one_step else _once(case)  # without a first step of its own
+        yield Item("solid's Newton iteration", f"linear: factorised {often}")
     if isinstance(case.time, Steady):
         yield Item("time loop", "steady: no inertia, no time steps")
 

@@ -135,7 +135,7 @@ class SolidSolver:
         """Acceleration under the loads of the case without a fluid; 0 where the solids are held."""
         equations = self.equations
         gradient = equations.gradient(displacement)
-        force = equations.loads.dead(time)
+        force = equations.loads.dead(time).copy()
         for pressure in equations.loads.pressures(time):
             pressure.add_force(force, displacement)
         force = force - equations.internal_force(gradient, equations.stress(gradient))

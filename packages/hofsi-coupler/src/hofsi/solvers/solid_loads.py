@@ -227,13 +227,14 @@ class SolidLoads:
         self._dead_is_steady = self._edges.steady and _steady([f for force, _ in self._body for f in force])
 
     def dead(self, time: float) -> Array:
-        """Nodal forces of body forces and tractions, shape (n, 2); kept if they do not depend on time."""
+        """Nodal forces of body forces and tractions, shape (n, 2); read-only, kept if they do not depend on time."""
         if self._dead is None or not self._dead_is_steady:
             f = self._edges.tractions(time)
             for force, own in self._body:
                 at_points = _pair(force, self._geometry.x[own], time)
                 values = kernel.body_force(self._N, self._geometry.weights[own], at_points)
                 np.add.at(f, self._mesh.cells[own], values)
+            f.setflags(write=False)
             self._dead = f
         return self._dead
 
