@@ -240,32 +240,65 @@ def test_the_interface_moves_with_the_solid():
 
 
 def counted(*changes):
-    """Factorisations and solutions of the fluid, and coupling iterations, of every step of the plate."""
+    """Factorisations, solutions and responses of the fluid, and coupling iterations, of every step of the plate."""
     text = FLAP
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
     problem = build(read_case(tomllib.loads(text), "test.toml"))
-    fluid, before, rows = problem.counts["fluid"], np.zeros(2, dtype=int), []
+    fluid, before, rows = problem.counts["fluid"], np.zeros(3, dtype=int), []
     for record in simulate(problem):
-        now = np.array([fluid.factorisations, fluid.solves])
+        now = np.array([fluid.factorisations, fluid.solves, fluid.responses])
         rows.append((*(now - before), record.coupling.iterations))
         before = now
     return np.array(rows).T
 
 
-def test_extrapolated_geometry_factorises_once_a_step():
-    factorisations, solves, iterations = counted()
+def test_extrapolated_geometry_factorises_and_solves_once_a_step():
+    factorisations, solves, responses, iterations = counted()
     # From rest, nothing lets expect the first velocities: Newton's method goes on from the first linearisation.
     assert factorisations[0] > 2
     np.testing.assert_array_equal(factorisations[3:], 1)
-    np.testing.assert_array_equal(solves[3:], iterations[3:])
+    np.testing.assert_array_equal(solves[3:], 1)
+    np.testing.assert_array_equal(responses[3:], iterations[3:] - 1)
 
 
 def test_steps_that_merely_convect_never_iterate_on_convection():
-    factorisations, solves, iterations = counted(("viscosity = 0.05", 'viscosity = 0.05\nconvection = "extrapolated"'))
+    factorisations, solves, responses, iterations = counted(
+        ("viscosity = 0.05", 'viscosity = 0.05\nconvection = "extrapolated"')
+    )
     np.testing.assert_array_equal(factorisations, 1)
-    np.testing.assert_array_equal(solves, iterations)
+    np.testing.assert_array_equal(solves, 1)
+    np.testing.assert_array_equal(responses, iterations - 1)
+
+
+def test_responses_are_solutions(monkeypatch):
+    """With the fluid solved for in every iteration the same comes out, to the accuracy of the factors."""
+    changes = ("[time]", "[coupling]\ntolerance = 1e-11\n[time]"), ("end = 0.5", "end = 0.2")
+    problem, quick = run(FLAP, *changes)
+    assert problem.counts["fluid"].responses > 2 * len(quick)
+    monkeypatch.setattr(FluidStep, "respond", lambda step, velocity: None)
+    problem, slow = run(FLAP, *changes)
+    assert problem.counts["fluid"].responses == 0
+    for name in ("displacement", "reaction"):
+        a, b = (getattr(records[-1].state.solid, name) for records in (quick, slow))
+        np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-9 * np.abs(b).max())
+
+
+def test_a_response_that_the_fields_do_not_confirm_is_not_believed(monkeypatch):
+    changes = ("[time]", "[coupling]\ntolerance = 1e-9\n[time]"), ("end = 0.5", "end = 0.2")
+    _, right = run(FLAP, *changes)
+    respond = FluidStep.respond
+
+    def wrong(step, velocity):
+        reaction = respond(step, velocity)
+        return None if reaction is None else 1.01 * reaction
+
+    monkeypatch.setattr(FluidStep, "respond", wrong)
+    problem, found = run(FLAP, *changes)
+    assert problem.counts["fluid"].solves > 2 * len(found)
+    a, b = (records[-1].state.solid.displacement for records in (right, found))
+    np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-7 * np.abs(a).max())
 
 
 def test_two_solids_are_independent_of_their_order_in_the_scene():

@@ -112,3 +112,46 @@ def test_singular_inner_block_is_reported(distorted):
     system = CondensedSystem(dofs, boundary, 2 * len(mesh.points), supports(mesh, False))
     with pytest.raises(LinearSolverError, match="inner unknowns is singular"):
         system.factorise(A)
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_a_border_responds_as_the_full_matrix_says(distorted, order):
+    rng = np.random.default_rng(19)
+    mesh = distorted(order)
+    dofs, boundary = numbering(mesh)
+    size = 2 * len(mesh.points)
+    constraints = supports(mesh, rolling=True)
+    nodes = mesh.edge_nodes("left")[1:-1]  # not where the roller turns the frame
+    border = (2 * nodes[:, None] + np.arange(2)).ravel()
+    A, r = element_matrices(dofs, rng), rng.standard_normal(dofs.shape)
+    places = mesh.points[mesh.cells].mean(axis=1)
+    system = CondensedSystem(dofs, boundary, size, constraints, places=places, border=border)
+    factor = system.factorise_with_border(A)
+    np.testing.assert_allclose(factor.solve(r), system.factorise(A).solve(r), atol=1e-12)
+    K = np.zeros((size, size))
+    for numbers, block in zip(dofs, A, strict=True):
+        K[np.ix_(numbers, numbers)] += block
+    given = rng.standard_normal(len(border))
+    x = factor.extended(given)
+    np.testing.assert_array_equal(x[border], given)
+    held = np.setdiff1d(np.flatnonzero(constraints.fixed.ravel()), border)
+    free = np.setdiff1d(np.arange(size), np.append(held, border))
+    frames = constraints.frames
+    balance = (frames.transpose(0, 2, 1) @ (K @ x).reshape(-1, 2, 1)).ravel()
+    np.testing.assert_allclose(balance[free], 0.0, atol=1e-11)
+    np.testing.assert_allclose((K @ x)[border], factor.border_response @ given, atol=1e-11)
+
+
+def test_a_border_takes_a_factorisation_that_keeps_it(distorted):
+    mesh = distorted(2)
+    dofs, boundary = numbering(mesh)
+    constraints = supports(mesh, rolling=False)
+    nodes = mesh.edge_nodes("left")
+    border = (2 * nodes[:, None] + np.arange(2)).ravel()
+    A = element_matrices(dofs, np.random.default_rng(23))
+    places = mesh.points[mesh.cells].mean(axis=1)
+    system = CondensedSystem(dofs, boundary, 2 * len(mesh.points), constraints, places=places, border=border)
+    assert system.factorise(A).border_response is None
+    assert system.factorise_with_border(A).border_response.shape == (len(border), len(border))
+    without = CondensedSystem(dofs, boundary, 2 * len(mesh.points), constraints, border=border)
+    assert without.factorise_with_border(A).border_response is None  # SuperLU

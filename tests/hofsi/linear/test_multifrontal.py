@@ -56,6 +56,30 @@ def test_factors_are_used_again_and_the_right_hand_side_is_kept():
     assert not solver.fell_back
 
 
+@pytest.mark.parametrize("leaf", [1, 3, 100])
+def test_kept_unknowns_are_left_with_the_schur_complement(leaf):
+    cells, size, places, S = elements(fixed=0.1)
+    kept = 11
+    # Any unknowns may be kept; they are numbered last.
+    number = np.random.default_rng(3).permutation(size)
+    cells = np.where(cells >= 0, number[cells], -1)
+    K = assembled(cells, size, S).toarray()
+    n = size - kept
+    factor = MultifrontalFactor(EliminationTree(cells, size, places, leaf, kept), S)
+    inner = np.linalg.solve(K[:n, :n], K[:n, n:])
+    np.testing.assert_allclose(factor.complement, K[n:, n:] - K[n:, :n] @ inner, atol=1e-11)
+    x = np.random.default_rng(7).standard_normal(kept)
+    np.testing.assert_allclose(factor.extended(x), np.append(-inner @ x, x), atol=1e-11)
+    b = np.random.default_rng(8).standard_normal(n)
+    np.testing.assert_allclose(factor.substitute(b), np.linalg.solve(K[:n, :n], b), atol=1e-11)
+    np.testing.assert_allclose(factor.product(b), K[:n, :n] @ b, atol=1e-12)
+
+
+def test_nothing_kept_leaves_nothing():
+    cells, size, places, S = elements()
+    assert MultifrontalFactor(EliminationTree(cells, size, places), S).complement.shape == (0, 0)
+
+
 def saddle(scale=1.0):
     """Like Stokes: the last field of each corner has no diagonal."""
     cells, size, places, S = elements(fixed=0.0, seed=8)

@@ -51,6 +51,49 @@ def test_a_linear_step_is_factorised_once_however_often_it_is_solved(flows):
     assert np.abs(results[0]).max() >= 1.0
 
 
+@pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
+def test_a_linear_step_responds_to_its_interface_without_a_solution(flows, model):
+    mesh = flows.grid(3)
+    top = mesh.edge_nodes("top")
+    conditions = [case.NoSlip(("left", "bottom")), case.DoNothing(("right",))]
+    solver = flows.solver(mesh, conditions, interface=top, model=model)
+    state = solver.initial_state()
+
+    def begin(responding):
+        return solver.begin_step(state, mesh.points, (0.1,), 0.1, convection="extrapolated", responding=responding)
+
+    rng = np.random.default_rng(31)
+    first, second, third = (rng.standard_normal((len(top), 2)) for _ in range(3))
+    step = begin(True)
+    assert step.respond(first) is None  # not solved yet
+    step.solve(first)
+    np.testing.assert_allclose(step.respond(first), step.reaction()[top], rtol=0.0, atol=1e-13)
+    answers = step.respond(second), step.respond(third)
+    made = solver.counts.solves
+    for velocity, answer in zip((second, third), answers, strict=True):
+        u, p = step.solve(velocity)
+        reference = begin(False)
+        u_again, p_again = reference.solve(velocity)
+        np.testing.assert_allclose(u, u_again, rtol=0.0, atol=1e-11 * np.abs(u).max())
+        np.testing.assert_allclose(p, p_again, rtol=0.0, atol=1e-11 * np.abs(p).max())
+        exact = reference.reaction()[top]
+        np.testing.assert_allclose(answer, exact, rtol=0.0, atol=1e-11 * np.abs(exact).max())
+        np.testing.assert_allclose(step.reaction()[top], exact, rtol=0.0, atol=1e-11 * np.abs(exact).max())
+        assert reference.respond(velocity) is None
+    assert solver.counts.solves == made + 2  # those of the reference
+
+
+def test_an_enclosed_fluid_does_not_respond_without_a_solution(flows):
+    mesh = flows.grid(3)
+    top = mesh.edge_nodes("top")
+    solver = flows.solver(mesh, [case.NoSlip(("left", "bottom", "right"))], interface=top)
+    step = solver.begin_step(
+        solver.initial_state(), mesh.points, (0.1,), 0.1, convection="extrapolated", responding=True
+    )
+    step.solve(np.zeros((len(top), 2)))
+    assert step.respond(np.zeros((len(top), 2))) is None
+
+
 def test_a_linearised_step_far_from_what_was_expected_is_linearised_about_what_newtons_method_finds(flows):
     mesh = flows.grid(3)
     top = mesh.edge_nodes("top")

@@ -20,6 +20,8 @@ class Counts:
     assemblies : int
         Element matrices that are factorised.
     factorisations, solves : int
+    responses : int
+        Answers of a fluid to another velocity of its interface that took a product with a small matrix only.
     iterations : int
         Nonlinear iterations.
     continuation_steps : int
@@ -41,6 +43,7 @@ class Counts:
     assemblies: int = 0
     factorisations: int = 0
     solves: int = 0
+    responses: int = 0
     iterations: int = 0
     continuation_steps: int = 0
     backflows: int = 0

@@ -71,6 +71,11 @@ class ConvergenceTest:
             return Residuals(d, 0.0 if d == 0.0 else np.inf)
         return Residuals(d, change / loaded)
 
+    def confirms(self, force: Array, exact: Array) -> bool:
+        """Whether a force that the displacement was computed from is that of the fields, within the tolerance."""
+        loaded = max(float(np.linalg.norm(exact - self._f_n)), _FLOOR * self._largest_f)
+        return bool(np.linalg.norm(exact - force) <= self.tolerance * loaded)
+
     def _change(self, force: Array, off: float) -> float:
         """How much the force will change in the next iteration after one with a residual of norm ``off``."""
         if self._last is None:

@@ -40,6 +40,11 @@ class InterfaceLoad:
         self._neighbours = NeighbourSides(solver, sides.tolist(), interface.fluid[~held])
         self._rows = np.searchsorted(interface.fluid, self._neighbours.nodes)
 
+    @property
+    def needs_fields(self) -> bool:
+        """Whether the reaction at the interface alone does not tell the forces."""
+        return bool(self._neighbours)
+
     def evaluate(self, state: FluidState) -> Array:
         """Return the nodal forces at a state that the solver has computed, shape (k, 2)."""
         force = -state.reaction[self._nodes]

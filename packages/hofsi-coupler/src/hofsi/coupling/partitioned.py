@@ -43,6 +43,25 @@ class _Fields:
     displacement: Array
 
 
+@dataclass
+class _Flow:
+    """The flow around one displacement of the interface: its load, and the rest when it is asked for.
+
+    Attributes
+    ----------
+    force : ndarray, shape (k, 2)
+        On the solid, at the nodes of the interface.
+    converged : bool
+        Whether the flow itself has.
+    finish : callable
+        Makes the flow's state, whose load confirms ``force``, and its mesh.
+    """
+
+    force: Array
+    converged: bool
+    finish: Callable[[], tuple[FluidState, MeshState]]
+
+
 class CoupledMarch:
     """Strong coupling of a fluid and one or several solids.
 
@@ -79,6 +98,7 @@ class CoupledMarch:
         held = np.logical_and.reduce(solid.supports.constraints.fixed[interface.solid], axis=1)
         self._load = InterfaceLoad(fluid, interface, held)
         self._regenerated = 0  # blocks, in the meshes of the step at hand
+        self._believing = True  # responses of the fluid, until its fields tell another force
 
     def initial(self, time: float) -> State:
         """Initial fields; the fluid mesh fits the solid's initial displacement."""
@@ -110,10 +130,14 @@ class CoupledMarch:
         implicit = self._settings.geometry == "implicit"
         convection = self._fluid.fluid.convection_of_steps(self._settings)
 
+        responding = not implicit and not self._load.needs_fields
+
         def begin(d: Array, before: FluidStep | None) -> tuple[FluidStep, MeshState]:
             moved = self._move(mesh, d, time)
             with self._clock.phase("fluid"):
-                step = self._fluid.begin_step(fluid, moved.mesh.points, steps, time, convection=convection)
+                step = self._fluid.begin_step(
+                    fluid, moved.mesh.points, steps, time, convection=convection, responding=responding
+                )
                 if before is not None:
                     step.continue_from(before)
                 return step, moved
@@ -121,13 +145,10 @@ class CoupledMarch:
         fixed = None if implicit else begin(predicted, None)
         last: FluidStep | None = None
 
-        def flow(d: Array) -> tuple[FluidStep, MeshState]:
+        def flow(d: Array) -> _Flow:
             nonlocal last
-            step, moved = fixed or begin(d, last)
-            with self._clock.phase("fluid"):
-                step.solve(c[0] * d + rest, max_iterations=_NEWTON if implicit else None)
-            last = step
-            return step, moved
+            last, moved = fixed or begin(d, last)
+            return self._flow(last, moved, c[0] * d + rest, _NEWTON if implicit else None)
 
         self._test.begin_step(state.interface[0], self._load.evaluate(fluid))
         fields, record = self._iterate(predicted, flow, solid_step, f"coupling, t = {time:g}")
@@ -185,24 +206,39 @@ class CoupledMarch:
         at_rest = np.zeros((len(self._interface.fluid), 2))
         last: FluidStep | None = None
 
-        def flow(d: Array) -> tuple[FluidStep, MeshState]:
+        def flow(d: Array) -> _Flow:
             nonlocal last
             moved = self._move(mesh, d, fluid.time)
             with self._clock.phase("fluid"):
                 step = self._fluid.begin_steady(fluid, moved.mesh.points)
                 if last is not None:
                     step.continue_from(last)
-                step.solve(at_rest)
             last = step
-            return step, moved
+            return self._flow(step, moved, at_rest)
 
         self._test.begin_step(0.0, 0.0)
         return self._iterate(displacement[self._interface.solid], flow, solid_step, "steady coupling", share)
 
+    def _flow(self, step: FluidStep, mesh: MeshState, velocity: Array, max_iterations: int | None = None) -> _Flow:
+        """The flow of a step for a velocity of the interface: solved for, or the step's response to it."""
+
+        def solve() -> tuple[FluidState, MeshState]:
+            with self._clock.phase("fluid"):
+                step.solve(velocity, max_iterations=max_iterations)
+                return step.accept(), mesh
+
+        with self._clock.phase("fluid"):
+            reaction = step.respond(velocity) if self._believing else None
+        if reaction is not None:
+            return _Flow(-reaction, True, solve)
+        state, mesh = solve()
+        with self._clock.phase("fluid"):
+            return _Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh))
+
     def _iterate(
         self,
         d: Array,
-        flow: Callable[[Array], tuple[FluidStep, MeshState]],
+        flow: Callable[[Array], _Flow],
         solid_step: SolidStep,
         where: str,
         share: float = 1.0,
@@ -217,7 +253,7 @@ class CoupledMarch:
     def _iterated(
         self,
         d: Array,
-        flow: Callable[[Array], tuple[FluidStep, MeshState]],
+        flow: Callable[[Array], _Flow],
         solid_step: SolidStep,
         where: str,
         share: float,
@@ -225,14 +261,13 @@ class CoupledMarch:
         """Fixed-point iteration d ↦ d̃ with acceleration, under a share of the fluid's load."""
         settings, interface = self._settings, self._interface
         self._accelerator.begin_step()
+        self._believing = True
         inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
         displacement: Array | None = None
         residuals = Residuals(np.inf, np.inf)
         for iteration in range(1, settings.max_iterations + 1):
-            step, moved = flow(d)
-            with self._clock.phase("fluid"):
-                fluid = step.accept()
-                force = self._load.evaluate(fluid)
+            now = flow(d)
+            force = now.force
             with self._clock.phase("solid"):
                 displacement = solid_step.solve(share * self._nodal(force), displacement, tolerance=inner)
             image = displacement[interface.solid]
@@ -240,11 +275,14 @@ class CoupledMarch:
             if not (np.isfinite(residual).all() and np.isfinite(force).all()):
                 raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
             residuals = self._test.residuals(image, residual, force)
-            if step.converged and residuals.largest <= settings.tolerance:
-                self._accelerator.end_step()
-                record = CouplingRecord(iteration, residuals.displacement, residuals.force)
-                mesh = replace(moved, regenerated=self._regenerated)
-                return _Fields(fluid, mesh, solid_step, displacement), record
+            if now.converged and residuals.largest <= settings.tolerance:
+                fluid, moved = now.finish()
+                self._believing = self._test.confirms(force, self._load.evaluate(fluid))
+                if self._believing:
+                    self._accelerator.end_step()
+                    record = CouplingRecord(iteration, residuals.displacement, residuals.force)
+                    mesh = replace(moved, regenerated=self._regenerated)
+                    return _Fields(fluid, mesh, solid_step, displacement), record
             with self._clock.phase("coupling"):
                 d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
         raise CouplingError(

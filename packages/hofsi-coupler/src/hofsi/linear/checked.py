@@ -64,6 +64,11 @@ class CheckedSolver:
         self.fell_back = False
 
     @property
+    def factor(self) -> Factor:
+        """The factors at hand."""
+        return self._factor
+
+    @property
     def entries(self) -> int:
         """Number of entries of the factors."""
         return self._factor.entries

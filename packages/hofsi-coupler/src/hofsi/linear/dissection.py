@@ -30,7 +30,7 @@ class Front:
         Numbers of these two.
     unknowns : ndarray
         Those that are eliminated, which no other element has, one beside the other along the cut, then those that are
-        left, in the order in which they will be eliminated.
+        left, in the order in which they will be eliminated, and at last those that will not be.
     eliminated : int
         How many are eliminated.
     """
@@ -41,7 +41,7 @@ class Front:
     eliminated: int
 
 
-def dissect(cells: Index, places: Array, leaf: int) -> tuple[Front, ...]:
+def dissect(cells: Index, places: Array, leaf: int, kept: Index | None = None) -> tuple[Front, ...]:
     """Cut the elements in two again and again, by lines that cross few unknowns.
 
     Parameters
@@ -52,6 +52,8 @@ def dissect(cells: Index, places: Array, leaf: int) -> tuple[Front, ...]:
         Where the elements are.
     leaf : int
         Elements of a part that is not cut any more.
+    kept : ndarray, optional
+        Unknowns that are not eliminated anywhere.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def dissect(cells: Index, places: Array, leaf: int) -> tuple[Front, ...]:
     ----------
     George, SIAM J. Numer. Anal. 10 (1973) 345–363, doi:10.1137/0710032.
     """
-    groups = UnknownGroups(cells)
+    groups = UnknownGroups(cells, kept)
     middles = groups.middles(places)
     parts: list[tuple[Index, tuple[int, ...], Index, Index]] = []
 
@@ -77,13 +79,13 @@ def dissect(cells: Index, places: Array, leaf: int) -> tuple[Front, ...]:
             children = first[0], second[0]
             own, inverse = np.unique(np.concatenate([first[1], second[1]]), return_inverse=True)
             counts = np.bincount(inverse, weights=np.concatenate([first[2], second[2]])).astype(np.int64)
-        done = counts == groups.degree[own]
+        done = (counts == groups.degree[own]) & ~groups.kept[own]
         eliminated = own[done][np.argsort(_along(middles[own[done]]), kind="stable")]
         parts.append((np.sort(elements) if not children else elements[:0], children, eliminated, own[~done]))
         return len(parts) - 1, own[~done], counts[~done]
 
     visit(np.arange(len(cells)), groups.pairs)
-    order = np.full(len(groups.degree), -1)
+    order = len(groups.degree) + np.arange(len(groups.degree))
     eliminated = np.concatenate([part[2] for part in parts])
     order[eliminated] = np.arange(len(eliminated))
     fronts = []

@@ -37,11 +37,14 @@ class EliminationTree:
         Where the elements are.
     leaf : int, optional
         Elements of a part that is not cut any more.
+    kept : int, optional
+        How many of the unknowns, the last ones, are not eliminated.
     """
 
-    def __init__(self, cells: Index, size: int, places: Array, leaf: int | None = None) -> None:
-        self.cells, self.size = cells, size
-        self.fronts = dissect(cells, places, leaf or max(1, round(_LEAF_UNKNOWNS / max(1, cells.shape[1]))))
+    def __init__(self, cells: Index, size: int, places: Array, leaf: int | None = None, kept: int = 0) -> None:
+        self.cells, self.size, self.kept = cells, size, kept
+        leaf = leaf or max(1, round(_LEAF_UNKNOWNS / max(1, cells.shape[1])))
+        self.fronts = dissect(cells, places, leaf, np.arange(size - kept, size))
         self._leaves = [k for k, front in enumerate(self.fronts) if not front.children]
         self._elements = np.concatenate([self.fronts[k].elements for k in self._leaves])
         sizes = [len(self.fronts[k].unknowns) ** 2 for k in self._leaves]
@@ -141,11 +144,18 @@ def multifrontal_solver(tree: EliminationTree, S: Array, matrix: Callable[[], sp
 class MultifrontalFactor:
     """LU factors of a sum of element matrices, with partial pivoting inside each front.
 
+    If the tree keeps unknowns the factors are those of the rows and columns of all others.
+
     Parameters
     ----------
     tree : EliminationTree
     S : ndarray, shape (e, k, k)
         Element matrices.
+
+    Attributes
+    ----------
+    complement : ndarray, shape (kept, kept)
+        What the kept unknowns do to their own rows while all others balance theirs: the Schur complement.
 
     Raises
     ------
@@ -175,6 +185,12 @@ class MultifrontalFactor:
                 start = tree.leaf_starts[k]
                 F = leaves[start : start + n * n].reshape(n, n).T
             waiting[k] = self._eliminate(front, F, m)
+        self.complement = self._sorted(waiting.popitem()[1])
+
+    def _sorted(self, left: Array) -> Array:
+        """What the last front leaves, in the order of the unknowns."""
+        place = np.argsort(self._tree.fronts[-1].unknowns[self._tree.fronts[-1].eliminated :])
+        return left[np.ix_(place, place)]
 
     def _eliminate(self, front: Front, F: Array, m: int) -> Array:
         """Eliminate the first m unknowns of a front; return what is left."""
@@ -209,18 +225,28 @@ class MultifrontalFactor:
 
     def substitute(self, b: Array) -> Array:
         """Solve once, without a look at the residual."""
-        x = b.copy()
+        x = np.append(b, np.zeros(self._tree.kept))
         for block in self._blocks:
             y = lapack.dgetrs(block.lu, block.pivots, x[block.own])[0]
             x[block.own] = y
             x[block.left] -= block.below @ y
+        return self._back(x, np.zeros(self._tree.kept))
+
+    def extended(self, kept: Array) -> Array:
+        """The other unknowns for given kept ones, while nothing else acts: all of them, shape (n,)."""
+        return np.append(self._back(np.zeros(self._tree.size), kept), kept)
+
+    def _back(self, x: Array, kept: Array) -> Array:
+        count = len(x) - len(kept)
+        x[count:] = kept
         for block in reversed(self._blocks):
             x[block.own] -= block.beside @ x[block.left]
-        return x
+        return x[:count]
 
     def product(self, x: Array) -> Array:
         """The matrix times a vector, element by element."""
-        cells, size = self._tree.cells, self._tree.size
-        local = np.append(x, 0.0)[cells]  # number -1 reads the zero
+        cells, size, count = self._tree.cells, self._tree.size, len(x)
+        local = np.append(x, np.zeros(self._tree.kept + 1))[cells]  # number -1 reads the last zero
         products = (self._S @ local[:, :, None])[:, :, 0]
-        return np.asarray(np.bincount(cells.ravel() + 1, weights=products.ravel(), minlength=size + 1)[1:], dtype=float)
+        sums = np.bincount(cells.ravel() + 1, weights=products.ravel(), minlength=size + 1)[1 : count + 1]
+        return np.asarray(sums, dtype=float)

@@ -18,16 +18,20 @@ class UnknownGroups:
     ----------
     cells : ndarray, shape (e, k)
         Unknowns of each element; negative ones are none.
+    kept : ndarray, optional
+        Unknowns that are not in a group with others than themselves.
 
     Attributes
     ----------
+    kept : ndarray of bool, shape (g,)
+        Groups of such unknowns.
     sizes, degree : ndarray, shape (g,)
         How many unknowns a group has, and how many elements have it.
     pairs : Pairs
         All groups and the elements that have them.
     """
 
-    def __init__(self, cells: Index) -> None:
+    def __init__(self, cells: Index, kept: Index | None = None) -> None:
         elements, local = np.nonzero(cells >= 0)
         unknowns = cells[elements, local]
         sequence = np.argsort(unknowns, kind="stable")
@@ -35,15 +39,16 @@ class UnknownGroups:
         starts = np.flatnonzero(np.diff(unknowns, prepend=-1))
         degree = np.diff(np.append(starts, len(unknowns)))
         # Elements of each unknown, side by side.
-        table = np.full((len(starts), int(degree.max(initial=0))), -1)
+        table = np.full((len(starts), int(degree.max(initial=0)) + 1), -1)
         column = np.arange(len(unknowns)) - np.repeat(starts, degree)
         table[np.repeat(np.arange(len(starts)), degree), column] = elements
+        table[:, -1] = np.isin(unknowns[starts], [] if kept is None else kept)
         keys = np.lexsort(table.T[::-1]) if table.size else np.zeros(0, dtype=np.int64)
         new = np.append(True, (np.diff(table[keys], axis=0) != 0).any(axis=1))[: len(keys)]
         self._unknowns, self._starts = unknowns[starts][keys], np.append(np.flatnonzero(new), len(keys))
         self.sizes = np.diff(self._starts)
         self.degree = degree[keys][new]
-        chosen = table[keys][new]
+        chosen, self.kept = table[keys][new][:, :-1], table[keys][new][:, -1] == 1
         self.pairs = Pairs(np.repeat(np.arange(len(chosen)), self.degree), chosen[chosen >= 0])
 
     def members(self, groups: Index) -> Index:

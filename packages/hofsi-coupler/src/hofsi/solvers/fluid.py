@@ -44,6 +44,7 @@ class FluidSolver(FluidEquations):
         time: float,
         *,
         convection: Convection,
+        responding: bool = False,
     ) -> FluidStep:
         """Start a time step that ends at ``time`` on a mesh with node positions ``points``.
 
@@ -58,6 +59,8 @@ class FluidSolver(FluidEquations):
             At the end of the step.
         convection : {"newton", "picard", "linearised", "extrapolated"}
             The last two expect the velocity extrapolated from the last steps (second order): the step is linear.
+        responding : bool
+            Whether the step will be solved for several velocities of the interface.
         """
         self.check_periodic(points, time)
         order = min(2, len(state.velocities), len(steps))
@@ -74,7 +77,9 @@ class FluidSolver(FluidEquations):
             self.boundary.stick(relative, points, mesh_velocity)
             expected = relative + mesh_velocity
         rate = float(c[0])
-        return FluidStep(self, state, points, mesh_velocity, rate, history, time, expected, order, convection)
+        return FluidStep(
+            self, state, points, mesh_velocity, rate, history, time, expected, order, convection, responding
+        )
 
     def begin_steady(self, state: FluidState, points: Array) -> FluidStep:
         """Start a search for the steady state on a mesh at rest."""

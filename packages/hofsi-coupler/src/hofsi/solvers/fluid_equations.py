@@ -22,7 +22,7 @@ from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
 from hofsi.solvers.fluid_factors import FluidFactors
 from hofsi.solvers.fluid_matrices import ConstantTerms
-from hofsi.solvers.fluid_system import FluidSystem, fluid_system
+from hofsi.solvers.fluid_system import FluidSystem, factorised, fluid_system
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -132,7 +132,9 @@ class FluidEquations:
         constraints = self.boundary.constraints(points)
         if self._system is None or self._system_for is not constraints:
             pinned = self.enclosed(points).pinned
-            self._system = fluid_system(self.space, constraints, pinned, self.linear, points, self.counts)
+            self._system = fluid_system(
+                self.space, constraints, pinned, self.linear, points, self.counts, self.boundary.interface
+            )
             self._system_for = constraints
         return self._system
 
@@ -161,11 +163,14 @@ class FluidEquations:
         unit = np.broadcast_to(np.eye(2)[:, :, None, None], (2, 2, *geometry.weights.shape))
         return kernel.stress_work(self.space.velocity.dN, geometry.J_inv, geometry.weights, unit)
 
-    def stokes_factor(self, points: Array, rate: float) -> Solver:
-        """Factors of the matrix without convection, kept as long as the matrix."""
+    def stokes_factor(self, points: Array, rate: float, *, responding: bool = False) -> Solver:
+        """Factors of the matrix without convection, kept as long as the matrix.
+
+        With ``responding`` those that are made tell of the response to the interface, see `factorised`.
+        """
         terms, system = self.constant_terms(points, rate), self.system(points)
         if self._stokes is None or self._stokes[0] is not terms or self._stokes[1] is not system:
-            self._stokes = (terms, system, system.factorise(terms.ask().matrices))
+            self._stokes = (terms, system, factorised(system, terms.ask().matrices, responding=responding))
             self.counts.factorised("mesh or step size")
         return self._stokes[2]
 

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 from hofsi.case import Convection
 from hofsi.errors import LinearSolverError, NewtonError
 from hofsi.fem.assembly import assemble_vector
+from hofsi.fem.condensation import CondensedFactor
 from hofsi.linear.solver import Solver
 from hofsi.solvers.continuation import approach
 from hofsi.solvers.fluid_equations import FluidEquations
 from hofsi.solvers.fluid_factors import Problem
 from hofsi.solvers.fluid_operator import FluidOperator
 from hofsi.solvers.fluid_state import FluidState
+from hofsi.solvers.fluid_system import factorised
+from hofsi.solvers.interface_response import InterfaceResponse
 
 Array = NDArray[np.float64]
 
@@ -26,6 +29,7 @@ _ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else
 _FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
 _ROUGHEST = 1e-3  # relative residual of an iteration's linear system
 _PART = 1e-3  # of the nonlinear tolerance: what the last linear system may leave
+_EXACT = 1e-12  # relative residual of a solution for another velocity of the interface; one with more is solved for
 _UNEXPECTED = 0.25  # of the velocity: a flow further from what was expected needs more than one linearisation
 
 
@@ -37,8 +41,11 @@ class FluidStep:
     one merely convects with the expected velocity, which leaves out ρ δ·∇u, of second order, and feeds energy into fast
     oscillations. Both are assembled and factorised once, however often they are solved. If the first solution of a
     linearised step is far from what was expected, as after an impulsive start, Newton's method goes on from it, and
-    further solutions are linearised about where it ends. A steady problem that Newton's method does not solve from
-    where it starts is approached from Stokes flow, with more and more of the convection.
+    further solutions are linearised about where it ends. Linear steps also tell, if asked to beforehand, how they
+    answer to other velocities of the interface without being solved for them.
+
+    A steady problem that Newton's method does not solve from where it starts is approached from Stokes flow, with more
+    and more of the convection.
 
     Attributes
     ----------
@@ -59,6 +66,7 @@ class FluidStep:
         expected: Array,
         order: int,
         convection: Convection,
+        responding: bool = False,
     ) -> None:
         self._equations, self.state, self.points, self.time = equations, state, points, time
         self.mesh_velocity = mesh_velocity
@@ -71,6 +79,8 @@ class FluidStep:
         self._settled = convection != "linearised" or not equations.convecting
         self._unknowns = np.concatenate([expected.ravel(), state.pressure])
         self._residual: Array | None = None
+        self._responding = responding
+        self._response: InterfaceResponse | None = None
 
     def continue_from(self, other: FluidStep) -> None:
         """Start the solution from that of another step, for example on the mesh of the last coupling iteration."""
@@ -106,20 +116,61 @@ class FluidStep:
             geometry, flux = self._equations.geometry(self.points), self._equations.pressure_work(self.points)
             enclosed.balance(self._operator.load, velocity, geometry, flux, moving=bool(self.mesh_velocity.any()))
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found below
-            unknowns = self._solve_linear(unknowns) if self.linear else self._solve_nonlinear(unknowns, max_iterations)
+            if self.linear:
+                unknowns = self._solve_linear(unknowns, interface)
+            else:
+                unknowns = self._solve_nonlinear(unknowns, max_iterations)
         if enclosed and self._residual is not None:
             enclosed.remove_mean(unknowns[n:], self._residual, geometry, flux)
         self._unknowns = unknowns
         return unknowns[:n].reshape(-1, 2), unknowns[n:]
 
-    def _solve_linear(self, unknowns: Array) -> Array:
+    def respond(self, interface: Array) -> Array | None:
+        """What would act on the fluid at the interface if it had another velocity, as exactly as the factors tell.
+
+        Parameters
+        ----------
+        interface : ndarray, shape (k, 2)
+
+        Returns
+        -------
+        ndarray, shape (k, 2), or None
+            None if that takes a solution: the step has not been solved yet, or it is not linear, or a part of the fluid
+            is enclosed, or the factors are not exact.
+        """
+        if self._response is None:
+            return None
+        self._equations.counts.responses += 1
+        return self._response.reaction(interface)
+
+    def _solve_linear(self, unknowns: Array, interface: Array) -> Array:
+        self.converged = True
+        if self._response is not None:
+            changed = self._unknowns + self._response.change(interface)
+            residual = self._linear_residual(changed)
+            norm, scale = self._operator.size(residual)
+            if norm <= _EXACT * scale:
+                self._residual = residual
+                self._respond_from(changed, interface)
+                return changed
         if self._factor is None:
             self._factor = self._factorised()
         unknowns = unknowns + self._factor.solve(self._linear_residual(unknowns))
         self._equations.counts.solves += 1
         self._residual = self._linear_residual(unknowns)
-        self.converged = True
-        return unknowns if self._settled else self._settle(unknowns)
+        if not self._settled:
+            unknowns = self._settle(unknowns)
+        self._respond_from(unknowns, interface)
+        return unknowns
+
+    def _respond_from(self, unknowns: Array, interface: Array) -> None:
+        """Answer to other velocities of the interface from this solution on, if the factors make it possible."""
+        self._response = None
+        if self._responding and isinstance(self._factor, CondensedFactor):
+            matrix = self._factor.border_response
+            if matrix is not None:
+                reaction = self.reaction()[self._equations.boundary.interface]
+                self._response = InterfaceResponse(self._factor, matrix, interface, reaction)
 
     def _linear_residual(self, unknowns: Array) -> Array:
         if not self._equations.convecting:
@@ -130,10 +181,10 @@ class FluidStep:
         """Factors of the matrix of a linear step."""
         equations = self._equations
         if not equations.convecting:
-            return equations.stokes_factor(self.points, self._rate)
+            return equations.stokes_factor(self.points, self._rate, responding=self._responding)
         equations.counts.factorised("linear step")
         matrices = self._operator.matrices(self._expected, newton=self._convection == "linearised")
-        return equations.system(self.points).factorise(matrices)
+        return factorised(equations.system(self.points), matrices, responding=self._responding)
 
     def _settle(self, unknowns: Array) -> Array:
         """Accept what the first linearisation gives, or go on with Newton's method and linearise about its result."""

@@ -20,7 +20,7 @@ from hofsi.linear.solver import Solver
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["FluidSystem", "fluid_system"]
+__all__ = ["FluidSystem", "factorised", "fluid_system"]
 
 
 class FluidSystem(Protocol):
@@ -59,6 +59,7 @@ def fluid_system(
     linear: LinearSettings,
     points: Array,
     counts: Counts,
+    interface: Index,
 ) -> FluidSystem:
     """Choose the linear systems of a fluid.
 
@@ -74,16 +75,28 @@ def fluid_system(
         Where the nodes are.
     counts : Counts
         Where iterations and preconditioners are counted.
+    interface : ndarray
+        Nodes whose velocity a solid prescribes.
     """
     places = points[space.velocity_cells].mean(axis=1)
     kept = space.size - (space.dofs.shape[1] - space.boundary) * len(space.dofs)
     periodic = space.same is not None
     if choose_solver(linear.solver, kept, periodic=periodic).solver == "direct":
         copies = space.copies if periodic else None
-        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places, copies)
+        # Where a pressure is held, velocities of the interface take sources that balance them: not a matter of the
+        # matrix alone. Periodic sides have nodes that stand for others.
+        border = () if pinned or periodic else (2 * interface[:, None] + np.arange(2)).ravel()
+        return CondensedSystem(space.dofs, space.boundary, space.size, constraints, pinned, places, copies, border)
     return SaddlePointSystem(
         space, constraints, pinned, places, _lengths(points[space.corners]), linear.tolerance, counts
     )
+
+
+def factorised(system: FluidSystem, A: ElementMatrices, *, responding: bool) -> Solver:
+    """Make what solves with element matrices; with ``responding`` it tells, if it can, how the interface responds."""
+    if responding and isinstance(system, CondensedSystem) and system.exact:
+        return system.factorise_with_border(A)
+    return system.factorise(A)
 
 
 def _lengths(X: Array) -> Array:
