@@ -21,6 +21,7 @@ from hofsi.case import (
     Point,
     PressureDifference,
     Probe,
+    SolidIntegral,
 )
 from hofsi.errors import CaseError
 from hofsi.io.quantities import read_quantity
@@ -72,6 +73,9 @@ MOMENT = 'on = "cylinder"\nabout'
         ('type = "flow-balance"', FlowBalance("q")),
         ('type = "mean-pressure"\non = "flag"', MeanPressure("q", ("flag",))),
         ('type = "kinetic-energy"', FluidIntegral("q", "kinetic-energy")),
+        ('type = "kinetic-energy"\nof = "fluid"', FluidIntegral("q", "kinetic-energy")),
+        ('type = "kinetic-energy"\nof = "solid"', SolidIntegral("q", "kinetic-energy")),
+        ('type = "strain-energy"', SolidIntegral("q", "strain-energy")),
         ('type = "continuity-residual"', FluidIntegral("q", "continuity-residual")),
         ('type = "probe"\nfield = "vorticity"\nat = [1, 2]', Probe("q", "vorticity", None, Point(1, 2), "fluid")),
     ],

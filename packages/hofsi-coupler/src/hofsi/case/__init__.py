@@ -53,6 +53,8 @@ from hofsi.case.quantities import (
     Probe,
     Quantity,
     ScalarQuantity,
+    SolidIntegral,
+    SolidIntegralName,
     TimeFunction,
 )
 from hofsi.case.settings import (
@@ -108,6 +110,8 @@ __all__ = [
     "Slip",
     "Solid",
     "SolidCondition",
+    "SolidIntegral",
+    "SolidIntegralName",
     "SolidScheme",
     "Steady",
     "TimeFunction",

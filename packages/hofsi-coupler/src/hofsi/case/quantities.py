@@ -22,6 +22,8 @@ __all__ = [
     "Probe",
     "Quantity",
     "ScalarQuantity",
+    "SolidIntegral",
+    "SolidIntegralName",
     "TimeFunction",
 ]
 
@@ -30,6 +32,9 @@ IntegralName: TypeAlias = Literal[
     "area", "continuity-residual", "dissipation", "divergence", "enstrophy", "kinetic-energy"
 ]
 """Integrals over the fluid."""
+
+SolidIntegralName: TypeAlias = Literal["kinetic-energy", "strain-energy"]
+"""Integrals over the solids."""
 
 
 @dataclass(frozen=True)
@@ -154,6 +159,15 @@ class FluidIntegral:
 
 
 @dataclass(frozen=True)
+class SolidIntegral:
+    """An integral over all solids."""
+
+    name: str
+    what: SolidIntegralName
+    place: str = ""
+
+
+@dataclass(frozen=True)
 class TimeFunction:
     """A given function of time, such as a prescribed motion, that other quantities are compared with."""
 
@@ -163,7 +177,15 @@ class TimeFunction:
 
 
 ScalarQuantity: TypeAlias = (
-    Probe | PressureDifference | Moment | FlowRate | FlowBalance | MeanPressure | FluidIntegral | TimeFunction
+    Probe
+    | PressureDifference
+    | Moment
+    | FlowRate
+    | FlowBalance
+    | MeanPressure
+    | FluidIntegral
+    | SolidIntegral
+    | TimeFunction
 )
 """Quantities with one component."""
 

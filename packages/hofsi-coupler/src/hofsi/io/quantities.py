@@ -19,6 +19,7 @@ from hofsi.case import (
     PressureDifference,
     Probe,
     Quantity,
+    SolidIntegral,
     TimeFunction,
     VectorExpression,
 )
@@ -46,6 +47,7 @@ _TYPES = (
     "flow-balance",
     "mean-pressure",
     *_INTEGRALS,
+    "strain-energy",
     "expression",
 )
 
@@ -109,6 +111,10 @@ def _quantity(name: str, table: Table, mesh: MeshScene, constants: Mapping[str, 
             return MeanPressure(name, edge_names(table, mesh), place)
         case "expression":
             return TimeFunction(name, table.expression("value", ("t",), constants), place)
+        case "strain-energy":
+            return SolidIntegral(name, "strain-energy", place)
+        case "kinetic-energy" if _owner(table, "fluid", None) == "solid":
+            return SolidIntegral(name, "kinetic-energy", place)
         case _:
             return FluidIntegral(name, choice(table, "type", _INTEGRALS, "area"), place)
 

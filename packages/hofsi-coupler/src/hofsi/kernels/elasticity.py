@@ -30,6 +30,7 @@ __all__ = [
     "components_outermost",
     "deformation_gradient",
     "displacement_gradient",
+    "energy_density",
     "geometric_terms",
     "gradient_products",
     "internal_force",
@@ -119,6 +120,13 @@ def stress(H: Array, lame_lambda: Array, lame_mu: Array, m: Array) -> Array:
     """
     xx, yy, xy = _quadratic_strain(H, m)
     return _hooke(xx + H[..., 0, 0], yy + H[..., 1, 1], xy + 0.5 * (H[..., 0, 1] + H[..., 1, 0]), lame_lambda, lame_mu)
+
+
+def energy_density(H: Array, S: Array, m: Array) -> Array:
+    """Energy per undeformed volume, S:E/2, of a displacement gradient and the stress that belongs to it, (e, q)."""
+    xx, yy, xy = _quadratic_strain(H, m)
+    xx, yy, xy = xx + H[..., 0, 0], yy + H[..., 1, 1], xy + 0.5 * (H[..., 0, 1] + H[..., 1, 0])
+    return np.asarray(0.5 * (S[..., 0] * xx + S[..., 1] * yy) + S[..., 2] * xy)
 
 
 def quadratic_stress(H: Array, lame_lambda: Array, lame_mu: Array, m: Array) -> Array:

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 Symmetric = tuple[Array, Array, Array]  # xx, yy, xy
 
 __all__ = [
+    "energy_density",
     "linearised_stress",
     "log_thickness",
     "mean_stress",
@@ -112,6 +113,16 @@ def stress(H: Array, lame_lambda: Array, lame_mu: Array, *, plane_stress: bool) 
     change = _area_change(H)
     p, _ = _pressure(_log1p(change), lame_lambda, lame_mu, plane_stress)
     return _second_stress(_metric_change(H), (1.0 + change) ** 2, p, lame_mu)
+
+
+def energy_density(H: Array, lame_lambda: Array, lame_mu: Array, *, plane_stress: bool) -> Array:
+    """W of a displacement gradient, shape (e, q)."""
+    log_volume, (xx, yy, _) = _log1p(_area_change(H)), _metric_change(H)
+    grown = np.zeros_like(log_volume)
+    if plane_stress:
+        y = log_thickness(log_volume, lame_lambda, lame_mu)
+        log_volume, grown = log_volume + y, np.expm1(2.0 * y)
+    return np.asarray(lame_mu * (0.5 * (xx + yy + grown) - log_volume) + 0.5 * lame_lambda * log_volume**2)
 
 
 def out_of_plane(H: Array, lame_lambda: Array, lame_mu: Array, *, plane_stress: bool) -> tuple[Array, Array]:

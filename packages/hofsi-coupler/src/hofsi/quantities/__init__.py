@@ -58,6 +58,10 @@ def _scalar(problem: Problem, quantity: case.ScalarQuantity) -> Evaluator:
             return probe(problem, quantity)
         case case.PressureDifference():
             return pressure_difference(problem, quantity)
+        case case.SolidIntegral():
+            from hofsi.quantities.integral import solid_integral
+
+            return solid_integral(problem, quantity)
         case case.TimeFunction():
             value = quantity.value
             return lambda record: float(value.evaluate(t=record.time))

@@ -133,6 +133,10 @@ class SolidEquations:
         F = kernel.deformation_gradient(gradient, self.m)
         return self._assembled(kernel.internal_force(F, stress, self._dN, self._J_inv, self._weights))
 
+    def strain_energy(self, displacement: Array) -> float:
+        """Energy of the strain of a nodal displacement (n, 2)."""
+        return float((self._weights * self._laws.energy(self.gradient(displacement))).sum())
+
     def lowest_volume_ratio(self, displacement: Array) -> float:
         """Smallest det F at quadrature points; 1 for linear solids."""
         F = kernel.deformation_gradient(self.gradient(displacement), self.m)

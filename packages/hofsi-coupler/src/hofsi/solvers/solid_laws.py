@@ -24,6 +24,8 @@ class _Law(Protocol):
 
     def stress(self, H: Array) -> Array: ...
 
+    def energy(self, H: Array) -> Array: ...
+
     def mean_stress(self, H: Array, start: Array) -> Array: ...
 
     def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array) -> Array: ...
@@ -54,6 +56,9 @@ class _Hooke:
 
     def stress(self, H: Array) -> Array:
         return elasticity.stress(H, self.lame_lambda, self.lame_mu, self.m)
+
+    def energy(self, H: Array) -> Array:
+        return elasticity.energy_density(H, self.stress(H), self.m)
 
     def mean_stress(self, H: Array, start: Array) -> Array:
         return self.stress(H) + elasticity.quadratic_stress(H - start, self.lame_lambda, self.lame_mu, self.m)
@@ -89,6 +94,9 @@ class _NeoHooke:
 
     def stress(self, H: Array) -> Array:
         return neo_hooke.stress(H, self.lame_lambda, self.lame_mu, plane_stress=self.plane_stress)
+
+    def energy(self, H: Array) -> Array:
+        return neo_hooke.energy_density(H, self.lame_lambda, self.lame_mu, plane_stress=self.plane_stress)
 
     def mean_stress(self, H: Array, start: Array) -> Array:
         return neo_hooke.mean_stress(H, start, self.lame_lambda, self.lame_mu, plane_stress=self.plane_stress)
@@ -167,6 +175,13 @@ class SolidLaws:
     def stress(self, H: Array) -> Array:
         """Second Piola–Kirchhoff stress of a displacement gradient (e, q, 2, 2), shape (e, q, 3)."""
         return self._symmetric(lambda law, own: law.stress(_of(H, own)), H)
+
+    def energy(self, H: Array) -> Array:
+        """Energy per undeformed volume of a displacement gradient (e, q, 2, 2), shape (e, q)."""
+        W = np.empty(H.shape[:2])
+        for own, law in self._groups:
+            W[own] = law.energy(_of(H, own))
+        return W
 
     def mean_stress(self, H: Array, start: Array) -> Array:
         """Stress of a midpoint step that keeps the energy, shape (e, q, 3).
