@@ -44,6 +44,14 @@ class BoundaryFlow:
         """Return ∫ max(-u·n, 0), what enters where fluid enters; walls that recede let it in."""
         return -float(sum(np.minimum(flow, 0.0).sum() for flow in self._flows(state, relative=False)))
 
+    def kinetic_energy_rate(self, state: FluidState) -> float:
+        """Return ∫ ρ |u|²/2 (u - w)·n, the kinetic energy per unit time and depth that leaves with the fluid."""
+        solver, rate = self._solver, 0.0
+        for group, flow in zip(self._groups(state), self._flows(state, relative=True), strict=True):
+            u = group.table.N @ state.velocity[solver.space.velocity_cells[group.elements]]
+            rate += 0.5 * solver.fluid.density * float(((u * u).sum(axis=-1) * flow).sum())
+        return rate
+
     def mean_pressure(self, state: FluidState) -> float:
         """Return ∫ p ds/∫ ds."""
         space = self._solver.space

@@ -19,7 +19,7 @@ from hofsi.solvers.fluid import FluidSolver, FluidState
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides", "named_sides"]
+__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides", "given_traction", "named_sides"]
 
 
 def boundary_sides(mesh: QuadMesh) -> Index:
@@ -179,11 +179,18 @@ class BoundaryForce:
         for condition, sides in self._loaded:
             X = state.points[0][solver.space.velocity_cells]
             for group in side_geometry(X, sides, solver.space.velocity_sides):
-                if isinstance(condition, case.DoNothing):
-                    given = _transposed(solver, group, _gradient(solver, group, group.elements, state))
-                else:
-                    given = solver.boundary.traction(condition, group, state.time)
-                yield group.x, np.where(_given(condition), 0.0, given)
+                yield group.x, given_traction(solver, condition, group, state)
+
+
+def given_traction(
+    solver: FluidSolver, condition: case.FluidCondition, group: SideGeometry, state: FluidState
+) -> Array:
+    """Traction that a condition prescribes, times length and weight, (k, q, 2); 0 where it gives the velocity."""
+    if isinstance(condition, case.DoNothing):
+        given = _transposed(solver, group, _gradient(solver, group, group.elements, state))
+    else:
+        given = solver.boundary.traction(condition, group, state.time)
+    return np.where(_given(condition), 0.0, given)
 
 
 def _cross(first: Array, second: Array) -> Array:
