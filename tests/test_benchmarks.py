@@ -12,11 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
 TINY = {
     "curve_accuracy": ["--orders", "1", "3", "--elements", "8", "16", "--kinds", "arc", "nurbs, degree 3", "spline"],
+    "flag_oscillations": ["fsi3", "--orders", "2", "--set", "time.end=0.01"],
     "fluid_linear_solvers": ["--orders", "2", "--k", "2", "--problems", "stokes", "step 0.01"],
     "fluid_order": ["--orders", "2", "--elements", "1", "2", "--meshes", "blocks", "pseudo-solid"],
     "fluid_work_precision": ["--orders", "2", "4", "--counts", "1,2,6,2"],
@@ -40,7 +42,7 @@ TINY = {
     "mesh_motion_smoothness": ["--steps", "20", "--halvings", "1", "--order", "2"],
 }
 
-DRAWN = ("fluid_work_precision", "mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
+DRAWN = ("flag_oscillations", "fluid_work_precision", "mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
 PACKAGES = ("full_mesh_movers", "manufactured_flows", "motion_cases", "motion_contest")
 
 
@@ -194,3 +196,29 @@ def test_curves_are_met_at_the_order_of_the_elements(measured):
         assert rows["arc", 3][f"{name} order"] == pytest.approx(6.0, abs=0.2)
         assert rows["spline", 3][f"{name} order"] == "round-off"
         assert rows["nurbs, degree 3", 3][name] < 0.1 * rows["nurbs, degree 3", 1][name]
+
+
+def test_a_run_that_is_known_is_not_made_again(measured, monkeypatch):
+    first = measured("flag_oscillations")
+    module = importlib.import_module("flag_oscillations")
+    monkeypatch.setattr(module, "measure", lambda *_: pytest.fail("made again"))
+    again = module.main([*TINY["flag_oscillations"], "--json", str(first.folder / "flag_oscillations.json")])
+    assert [dict(row) for row in again.rows] == [dict(row) for row in first.result.rows]
+
+
+def test_differences_are_relative_to_the_reference(measured):
+    measured("flag_oscillations")
+    module = importlib.import_module("flag_oscillations")
+    row = {"reference": "fsi3", **module.REFERENCE["fsi3"], "drag amplitude": 1.01 * 27.74, "lift amplitude": None}
+    off = module.errors(row)
+    assert off["drag amplitude"] == pytest.approx(0.01)
+    assert np.isnan(off["lift amplitude"])
+    assert off["frequency"] == 0.0
+
+
+def test_the_last_periods_are_cut_out(measured):
+    measured("flag_oscillations")
+    module = importlib.import_module("flag_oscillations")
+    t = np.linspace(0.0, 5.0, 501)
+    start, stop = module._last_crossings(t, 0.3 + np.sin(2.0 * np.pi * (t - 0.123)))
+    assert (start, stop) == pytest.approx((2.123, 4.123), abs=1e-4)

@@ -20,7 +20,9 @@ SCENES = sorted((Path(__file__).resolve().parent.parent / "examples").glob("*.to
 # What makes a run quick, for the scenes that take long at order 2.
 QUICK = {
     "cfd3": ["time.end=0.01"],
+    "fsi2": ["time.end=0.02"],
     "fsi3": ["time.end=0.01"],
+    "fsi3_ring": ["time.end=0.01"],
     "oscillating_cylinder": ["time.end=0.1"],
     "pitching_airfoil": ["time.end=0.04"],
     "wall_ramm": ["time.dt=0.005", "time.end=0.01"],
