@@ -8,6 +8,7 @@ import pytest
 from hoblock import BlockStructure, generate
 from hoblock.expressions import compile_expression
 from hofsi import case
+from hofsi.counts import Counts
 from hofsi.linear.krylov import KrylovSolver
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_supports import SolidSupports
@@ -45,9 +46,13 @@ def test_solution_is_that_of_the_factors(order, columns, rows, height, mass):
     gradient = equations.gradient(bend)
     K = equations.tangent(gradient, equations.stress(gradient), mass, ())
     load = equations.shared(np.random.default_rng(37).standard_normal(points.shape))
-    factors = [solid_system(equations, supports, case.LinearSettings(kind)).factorise(K) for kind in ("direct", "amg")]
+    counts = Counts()
+    factors = [
+        solid_system(equations, supports, case.LinearSettings(kind), counts).factorise(K) for kind in ("direct", "amg")
+    ]
     expected, found = (factor.solve(load) for factor in factors)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
     iterative = factors[1].factor
     assert isinstance(iterative, KrylovSolver)
     assert 3 < iterative.iterations < 60
+    assert (counts.preconditioners, counts.linear_iterations) == (1, iterative.iterations)

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
+from hofsi.counts import Counts
 from hofsi.errors import LinearSolverError
 from hofsi.linear.extra import pyamg_module
 from hofsi.linear.solver import Solver
@@ -104,6 +105,8 @@ class KrylovSolver:
     preconditioner : Solver
     tolerance : float
         Of the residual, relative to the right-hand side.
+    counts : Counts, optional
+        Where its iterations are counted.
 
     Attributes
     ----------
@@ -111,7 +114,10 @@ class KrylovSolver:
         Of the last solution.
     """
 
-    def __init__(self, matrix: sp.spmatrix, preconditioner: Solver, tolerance: float) -> None:
+    def __init__(
+        self, matrix: sp.spmatrix, preconditioner: Solver, tolerance: float, counts: Counts | None = None
+    ) -> None:
+        self._counts = Counts() if counts is None else counts
         self._A, self._preconditioner, self._tolerance = matrix.tocsr(), preconditioner, tolerance
         self._size = float(spla.norm(self._A, np.inf)) if matrix.nnz else 0.0
         self.iterations = 0
@@ -127,6 +133,7 @@ class KrylovSolver:
         x, self.iterations = flexible_gmres(
             self._A.__matmul__, self._preconditioner.solve, b, self._tolerance, size=self._size
         )
+        self._counts.linear_iterations += self.iterations
         return x
 
 

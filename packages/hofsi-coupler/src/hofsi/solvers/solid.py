@@ -112,7 +112,7 @@ class SolidSolver:
         self.equations = SolidEquations(mesh, solids)
         self.supports = SolidSupports(mesh, solids, self.equations.cells_of)
         self.counts = Counts()
-        self.system = solid_system(self.equations, self.supports, linear or case.LinearSettings())
+        self.system = solid_system(self.equations, self.supports, linear or case.LinearSettings(), self.counts)
         self._tangent: Tangent | None = None
 
     def initial_state(self, time: float = 0.0) -> SolidState:

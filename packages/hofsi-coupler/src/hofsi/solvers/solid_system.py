@@ -7,6 +7,7 @@ from functools import partial
 import scipy.sparse as sp
 
 from hofsi.case import LinearSettings
+from hofsi.counts import Counts
 from hofsi.fem.coarsening import skeleton_coarsening
 from hofsi.fem.condensation import CondensedSystem
 from hofsi.linear.amg import Coarsening, PatchMultigrid
@@ -18,7 +19,9 @@ from hofsi.solvers.solid_supports import SolidSupports
 __all__ = ["solid_system"]
 
 
-def solid_system(equations: SolidEquations, supports: SolidSupports, linear: LinearSettings) -> CondensedSystem:
+def solid_system(
+    equations: SolidEquations, supports: SolidSupports, linear: LinearSettings, counts: Counts
+) -> CondensedSystem:
     """Choose the linear systems of solids.
 
     With "amg" the condensed matrix is solved by FGMRES, preconditioned by one multigrid cycle that knows the rigid body
@@ -29,6 +32,8 @@ def solid_system(equations: SolidEquations, supports: SolidSupports, linear: Lin
     equations : SolidEquations
     supports : SolidSupports
     linear : LinearSettings
+    counts : Counts
+        Where iterations and preconditioners are counted.
     """
     mesh = equations.mesh
     size, constraints = 2 * len(mesh.points), supports.constraints
@@ -38,8 +43,9 @@ def solid_system(equations: SolidEquations, supports: SolidSupports, linear: Lin
         return system
     nodes = equations.dofs[:, : equations.boundary : 2] // 2
     coarsening = skeleton_coarsening(nodes, mesh.order, constraints, system.unknowns, mesh.points)
-    return system.solved_by(partial(_multigrid_solver, coarsening, linear.tolerance))
+    return system.solved_by(partial(_multigrid_solver, coarsening, linear.tolerance, counts))
 
 
-def _multigrid_solver(coarsening: Coarsening, tolerance: float, matrix: sp.csc_matrix) -> KrylovSolver:
-    return KrylovSolver(matrix, PatchMultigrid(matrix, coarsening, symmetric=True), tolerance)
+def _multigrid_solver(coarsening: Coarsening, tolerance: float, counts: Counts, matrix: sp.csc_matrix) -> KrylovSolver:
+    counts.preconditioners += 1
+    return KrylovSolver(matrix, PatchMultigrid(matrix, coarsening, symmetric=True), tolerance, counts)
