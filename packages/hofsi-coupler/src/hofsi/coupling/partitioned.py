@@ -147,16 +147,19 @@ class CoupledMarch:
         solid = _parts(state)[1]
         self._regenerated = 0
         solid_step = self._solid.begin_static(solid)
-        with self._clock.phase("solid"):
-            start = unloaded = solid_step.solve(None)
-        if solid.displacement.any():
-            start = solid.displacement
+        start = solid.displacement if solid.displacement.any() else self._unloaded(solid_step)
         try:
             fields, record = self._steady(state, start, solid_step, 1.0)
         except ConvergenceError:
+            unloaded = self._unloaded(self._solid.begin_static(solid))
             fields, record = self._steady_by_parts(state, unloaded)
         d = fields.displacement[self._interface.solid]
         return State(fields.fluid, fields.solid.accept(fields.displacement), fields.mesh, (d,)), record
+
+    def _unloaded(self, solid_step: SolidStep) -> Array:
+        """The displacement without the fluid's load."""
+        with self._clock.phase("solid"):
+            return solid_step.solve(None)
 
     def _steady_by_parts(self, state: State, displacement: Array) -> tuple[_Fields, CouplingRecord]:
         """Apply the fluid's load in parts, from one steady state to the next."""
