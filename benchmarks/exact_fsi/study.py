@@ -38,20 +38,20 @@ __all__ = [
 ]
 
 IN_TIME: Mapping[str, tuple[Exact, float, Settings]] = {
-    "shear layer": (ShearLayer(), 2.0, Settings(order=6)),
-    "shear layer, neo-Hooke": (ShearLayer(), 2.0, Settings(order=6, model="neo-hooke")),
+    "shear layer": (ShearLayer(), 2.0, Settings(order=5)),
+    "shear layer, neo-Hooke": (ShearLayer(), 2.0, Settings(order=5, model="neo-hooke")),
     "piston": (Piston(), 2.0, Settings(order=4)),
     "rotating disc": (RotatingDisc(), 0.4, Settings(order=5)),
 }
 """Solution, end and mesh by name; fine enough in space to leave the error in time alone."""
 
 IN_SPACE: Mapping[str, tuple[Wave, float]] = {
-    "shear layer": (ShearLayer(speed=1e-3, frequency=4.0, step=0.1), 0.1),
+    "shear layer": (ShearLayer(speed=1e-4, frequency=2.0, step=0.2), 0.2),
     "rotating disc": (RotatingDisc(step=0.05), 0.05),
 }
 """Solution, discretised in time with a step. The shear layer moves the mesh so little that its nodes keep their y."""
 
-ELEMENTS: Mapping[int, tuple[int, int]] = {2: (2, 4), 3: (2, 4), 4: (2, 3), 5: (1, 2), 6: (1, 2)}
+ELEMENTS: Mapping[int, tuple[int, int]] = {2: (2, 4), 3: (2, 4), 4: (2, 4), 5: (1, 2)}
 """Along each block edge, by order."""
 
 _STEPS = 12
