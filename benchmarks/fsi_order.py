@@ -22,7 +22,7 @@ def main(argv: Sequence[str] | None = None) -> Result:
         "--geometries", nargs="+", choices=GEOMETRIES, default=list(GEOMETRIES), help="both by default"
     )
     options.add_argument("--schemes", nargs="+", choices=SCHEMES, default=list(SCHEMES), help="of the solid (all)")
-    options.add_argument("--steps", type=int, nargs=2, default=[20, 40], help="in time (default: 20 40)")
+    options.add_argument("--steps", type=int, nargs=2, help="in time (default: by case)")
     options.add_argument("--flap", type=int, nargs=3, help="steps of the flap and of its reference, as 40 80 320")
     given = options.parse_args(argv)
     rows = []
@@ -31,15 +31,16 @@ def main(argv: Sequence[str] | None = None) -> Result:
             found = in_space(case, order)
             rows.append(_row(f"{case}, p = {order}", "", "bdf2", vars(found.errors), vars(found.orders)))
     variants = [(geometry, scheme) for geometry in given.geometries for scheme in given.schemes]
+    steps = tuple(given.steps) if given.steps else None
     for case in given.cases:
         for geometry, scheme in variants:
-            found = in_time(case, geometry, scheme, tuple(given.steps))
+            found = in_time(case, geometry, scheme, steps)
             rows.append(_row(f"{case}, in time", geometry, scheme, vars(found.errors), vars(found.orders)))
     if given.flap:
-        *steps, many = given.flap
+        *counts, many = given.flap
         reference = flap_series(many)
         for geometry, scheme in variants:
-            series = [flap_series(count, geometry, scheme) for count in steps]
+            series = [flap_series(count, geometry, scheme) for count in counts]
             (ux, uy, fx, fy), orders = observed_of_flap(series, reference)
             errors = {"displacement": max(ux, uy), "load": max(fx, fy)}
             least = {"displacement": min(orders[:2]), "load": min(orders[2:])}

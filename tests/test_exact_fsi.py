@@ -60,9 +60,18 @@ def test_couette_flow_over_a_sheared_solid_stays(part, geometry, scheme):
     assert max(found.displacement, found.velocity, found.load) < 1e-10
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-def test_forces_on_a_piston_in_motion_are_near_from_the_first_step_on(part, scheme):
-    """Without a start of their own, errors of the other schemes are 0.14 at these steps, whatever their size."""
+def test_a_steady_solution_is_sought_from_the_initial_displacement(part):
+    """Of the solid without the fluid's load Newton's method finds no equilibrium from there; nothing needs it."""
+    solution = part("couette").Couette(0.5)
+    scene = solution.scene(part("settings").Settings(2, tolerance=1e-11), distorted=False, steady=True)
+    problem, (record,) = part("study").marched(scene)
+    found = part("errors").errors_at(solution, problem, record)
+    assert max(found.displacement, found.velocity, found.load) < 1e-10
+
+
+@pytest.mark.parametrize(("scheme", "ratio"), [("bdf2", 0.3), ("generalised-alpha", 0.6), ("energy-momentum", 0.6)])
+def test_forces_on_a_piston_in_motion_are_good_from_the_first_step_on(part, scheme, ratio):
+    """Largest errors: where the other schemes take over from backward differences they are of first order."""
     solution = part("piston").Piston()
     largest = []
     for steps in (10, 20):
@@ -71,4 +80,4 @@ def test_forces_on_a_piston_in_motion_are_near_from_the_first_step_on(part, sche
         errors = part("errors").load_errors(solution, problem, records)
         largest.append(np.abs(errors).max() / np.abs(solution.load_at(0.7)[0]))
     assert largest[0] < 0.02
-    assert largest[1] < 0.5 * largest[0]
+    assert largest[1] < ratio * largest[0]
