@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 
 __all__ = [
     "ELEMENTS",
+    "IN_SPACE",
     "IN_TIME",
     "Observed",
     "built",
@@ -51,7 +52,10 @@ IN_SPACE: Mapping[str, tuple[Wave, float]] = {
 }
 """Solution, discretised in time with a step. The shear layer moves the mesh so little that its nodes keep their y."""
 
-ELEMENTS: Mapping[int, tuple[int, int]] = {2: (2, 4), 3: (2, 4), 4: (2, 4), 5: (1, 2)}
+ELEMENTS: Mapping[str, Mapping[int, tuple[int, int]]] = {
+    "shear layer": {2: (2, 4), 3: (2, 4), 4: (2, 4), 5: (1, 2)},
+    "rotating disc": {2: (2, 4), 3: (2, 4), 4: (2, 3), 5: (1, 2)},
+}
 """Along each block edge, by order."""
 
 _STEPS = 12
@@ -90,7 +94,7 @@ def in_space(case: str, order: int, elements: tuple[int, int] | None = None) -> 
         Along each block edge; by default as in ``ELEMENTS``.
     """
     exact, step = IN_SPACE[case]
-    counts = elements or ELEMENTS[order]
+    counts = elements or ELEMENTS[case][order]
     found = []
     for n in counts:
         settings = Settings(order, n, dt=step, tolerance=1e-9)

@@ -33,7 +33,7 @@ def exact() -> Iterator[SimpleNamespace]:
 @pytest.fixture(scope="module")
 def reference(exact):
     """The flap with small steps."""
-    return exact.study.flap_series(320)
+    return exact.study.flap_series(160)
 
 
 # Couette flow over a sheared solid: exact at any order ----------------------------------------------------------------
@@ -98,7 +98,7 @@ def test_second_order_in_time_from_an_exact_state(exact, case, geometry, scheme)
 @pytest.mark.parametrize("geometry", GEOMETRIES)
 def test_second_order_in_time_of_a_flap_that_is_bent_far(exact, reference, geometry, scheme):
     assert np.abs(reference[:, 0]).max() > 0.25  # half of its length
-    series = [exact.study.flap_series(n, geometry, scheme) for n in (40, 80)]
+    series = [exact.study.flap_series(n, geometry, scheme) for n in (20, 40)]
     errors, orders = exact.study.observed_of_flap(series, reference)
     assert orders.min() > 1.8
-    assert errors.max() < 2e-3
+    assert errors.max() < 3e-3
