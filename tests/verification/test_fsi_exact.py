@@ -101,4 +101,4 @@ def test_second_order_in_time_of_a_flap_that_is_bent_far(exact, reference, geome
     series = [exact.study.flap_series(n, geometry, scheme) for n in (20, 40)]
     errors, orders = exact.study.observed_of_flap(series, reference)
     assert orders.min() > 1.8
-    assert errors.max() < 3e-3
+    assert errors.max() < 8e-3
