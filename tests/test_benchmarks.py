@@ -21,6 +21,21 @@ TINY = {
     "flag_oscillations": ["fsi3", "--orders", "2", "--set", "time.end=0.01"],
     "fluid_linear_solvers": ["--orders", "2", "--k", "2", "--problems", "stokes", "step 0.01"],
     "fluid_order": ["--orders", "2", "--elements", "1", "2", "--meshes", "blocks", "pseudo-solid"],
+    "fsi_order": [
+        "--orders",
+        "2",
+        "--cases",
+        "piston",
+        "--geometries",
+        "extrapolated",
+        "--steps",
+        "10",
+        "20",
+        "--flap",
+        "5",
+        "10",
+        "20",
+    ],
     "fluid_work_precision": ["--orders", "2", "4", "--counts", "1,2,6,2"],
     "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],
     "mesh_scaling": ["--nodes", "2000", "9000", "--order", "2", "--repeats", "2"],
@@ -43,7 +58,7 @@ TINY = {
 }
 
 DRAWN = ("flag_oscillations", "fluid_work_precision", "mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
-PACKAGES = ("full_mesh_movers", "manufactured_flows", "motion_cases", "motion_contest")
+PACKAGES = ("exact_fsi", "full_mesh_movers", "manufactured_flows", "motion_cases", "motion_contest")
 
 
 @dataclass(frozen=True)
@@ -185,6 +200,21 @@ def test_flows_converge_on_both_kinds_of_meshes(measured):
     for row in result.rows:
         assert row["velocity order"] > 2.0
         assert row["pressure order"] > 1.5
+
+
+def test_coupled_problems_converge_in_space_and_in_time(measured):
+    result = measured("fsi_order").result
+    assert [row["case"] for row in result.rows] == [
+        "shear layer, p = 2",
+        "rotating disc, p = 2",
+        *["piston, in time"] * 3,
+        *["flap, in time"] * 3,
+    ]
+    for row in result.rows[:2]:
+        assert row["displacement order"] > 2.5
+        assert row["load order"] > 3.5
+    for row in result.rows[2:5]:
+        assert row["velocity order"] > 1.8
 
 
 def test_curves_are_met_at_the_order_of_the_elements(measured):

@@ -24,3 +24,10 @@ def test_a_short_history_lowers_the_order():
     np.testing.assert_array_equal(predict([a], [0.1], 3), a)
     np.testing.assert_allclose(predict([a, b], [0.1, 0.1], 3), 2 * a - b)
     np.testing.assert_array_equal(predict([a, b], [0.1], 3), a)
+
+
+def test_a_known_velocity_makes_the_first_prediction_linear():
+    a, b, v = np.array([[1.0, 2.0]]), np.array([[0.5, 1.0]]), np.array([[10.0, -20.0]])
+    np.testing.assert_allclose(predict([a], [0.1], 2, v), [[2.0, 0.0]])
+    np.testing.assert_array_equal(predict([a], [0.1], 0, v), a)
+    np.testing.assert_allclose(predict([a, b], [0.1, 0.1], 1, v), 2 * a - b)

@@ -207,3 +207,19 @@ def test_a_constant_pressure_acts_once():
     state = march(solver, (1e-3,))[-1]
     momentum = (solver.equations.mass @ state.velocity).sum(axis=0)
     np.testing.assert_allclose(momentum, [0.0, 4e-3], atol=1e-6)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_starting_step_is_one_of_backward_differences(scheme):
+    solver = block(scheme, **THROWN)
+    reference = block("bdf2", **THROWN)
+    load = np.random.default_rng(11).normal(size=solver.mesh.points.shape)
+    got, expected = ([s.initial_state()] for s in (solver, reference))
+    for k, steps in enumerate(([0.01], [0.01, 0.01])):
+        for states, own in ((got, solver), (expected, reference)):
+            step = own.begin_step(states[-1], steps, 0.01 * (k + 1), starting=True)
+            states.append(step.accept(step.solve(load)))
+    np.testing.assert_allclose(got[-1].displacement, expected[-1].displacement, atol=1e-10)
+    np.testing.assert_allclose(got[-1].velocity, expected[-1].velocity, atol=1e-8)
+    assert [len(state.loads) for state in got] == [0, 1, 2]
+    assert len(got[-1].accelerations) == (scheme != "bdf2")

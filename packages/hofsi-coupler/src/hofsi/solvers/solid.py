@@ -17,7 +17,13 @@ from hofsi.solvers.solid_newton import SolidNewton, Tangent
 from hofsi.solvers.solid_rest import check_held
 from hofsi.solvers.solid_supports import SolidSupports
 from hofsi.solvers.solid_system import solid_system
-from hofsi.timestepping.second_order import MotionStep, backward_difference, generalised_alpha, midpoint
+from hofsi.timestepping.second_order import (
+    MotionStep,
+    backward_difference,
+    generalised_alpha,
+    load_weights,
+    midpoint,
+)
 
 Array = NDArray[np.float64]
 
@@ -43,8 +49,8 @@ class SolidState:
         Nodal forces of the supports on the solid, zero where nothing holds it; read-only. None in an initial state.
     accelerations : tuple of ndarray, shape (n, 2)
         The newest, if the scheme needs it; for the midpoint rule that of the middle of the last step. Read-only.
-    load : ndarray, shape (n, 2), or None
-        Nodal forces of the fluid; read-only. None in an initial state.
+    loads : tuple of ndarray, shape (n, 2)
+        Nodal forces of the fluid, newest first, at most two; read-only. Empty in an initial state.
     step : float
         Size of the last step, 0 in an initial state.
     """
@@ -54,14 +60,13 @@ class SolidState:
     time: float
     reaction: Array | None = None
     accelerations: tuple[Array, ...] = ()
-    load: Array | None = None
+    loads: tuple[Array, ...] = ()
     step: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("reaction", "load"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, _frozen(getattr(self, name)))
-        for name in ("displacements", "velocities", "accelerations"):
+        if self.reaction is not None:
+            object.__setattr__(self, "reaction", _frozen(self.reaction))
+        for name in ("displacements", "velocities", "accelerations", "loads"):
             object.__setattr__(self, name, tuple(_frozen(array) for array in getattr(self, name)))
 
     @property
@@ -142,7 +147,9 @@ class SolidSolver:
         factor = self.system.factorise(equations.element_masses())
         return factor.solve(equations.shared(force)).reshape(-1, 2)
 
-    def begin_step(self, state: SolidState, steps: Sequence[float], time: float) -> SolidStep:
+    def begin_step(
+        self, state: SolidState, steps: Sequence[float], time: float, *, starting: bool = False
+    ) -> SolidStep:
         """Start a time step that ends at ``time``.
 
         Backward differences are of first order as long as the state knows one time only.
@@ -154,15 +161,17 @@ class SolidSolver:
             This step's size and the one before it, newest first.
         time : float
             At the end of the step.
+        starting : bool
+            Make a step of backward differences whatever the scheme: they need no load and no acceleration at the start.
         """
         h = steps[0]
-        if self.scheme.name == "generalised-alpha":
+        if starting or self.scheme.name == "bdf2":
+            motion = backward_difference(state.displacements, state.velocities, steps)
+        elif self.scheme.name == "generalised-alpha":
             acceleration, radius = state.accelerations[0], self.scheme.spectral_radius
             motion = generalised_alpha(state.displacement, state.velocity, acceleration, h, radius)
-        elif self.scheme.name == "energy-momentum":
-            motion = midpoint(state.displacement, state.velocity, h)
         else:
-            motion = backward_difference(state.displacements, state.velocities, steps)
+            motion = midpoint(state.displacement, state.velocity, h)
         return SolidStep(self, state, motion, tuple(steps[:2]), time)
 
     def begin_static(self, state: SolidState | None = None) -> SolidStep:
@@ -318,18 +327,23 @@ class SolidStep:
                 f"solid, t = {self.time:g}",
             )
         reaction = self.reaction(displacement, self._load)
-        motion, load = self._motion, self._load
+        motion = self._motion
+        loads = () if self._load is None else (self._load, *self.state.loads[:1])
         if motion is None:
-            return SolidState((displacement,), (np.zeros(displacement.shape),), self.time, reaction, load=load)
+            return SolidState((displacement,), (np.zeros(displacement.shape),), self.time, reaction, loads=loads)
         displacements = displacement, self.state.displacement
         velocities = motion.velocity(displacement), self.state.velocity
         accelerations = () if self.solver.scheme.name == "bdf2" else (motion.acceleration(displacement),)
-        return SolidState(displacements, velocities, self.time, reaction, accelerations, load, self._steps[0])
+        return SolidState(displacements, velocities, self.time, reaction, accelerations, loads, self._steps[0])
 
     def _force(self, load: Array | None) -> Array:
         """Nodal forces at the point of equilibrium for a load of the fluid at the end of the step."""
         if load is None:
             return self._dead
         share = 1.0 if self._motion is None else self._motion.share
-        before = load if self.state.load is None else self.state.load
-        return self._dead + (load if share == 1.0 else share * load + (1.0 - share) * before)
+        before = self.state.loads
+        if share == 1.0 or not before:
+            return self._dead + load
+        ratio = self.state.step / self._steps[0] if len(before) > 1 else 0.0
+        weights = load_weights(share, ratio)
+        return np.asarray(self._dead + sum(w * f for w, f in zip(weights, (load, *before), strict=False)))

@@ -12,7 +12,7 @@ from hofsi.timestepping.schemes import bdf_weights
 
 Array = NDArray[np.float64]
 
-__all__ = ["MotionStep", "backward_difference", "generalised_alpha", "midpoint"]
+__all__ = ["MotionStep", "backward_difference", "generalised_alpha", "load_weights", "midpoint"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,6 +151,31 @@ def midpoint(displacement: Array, velocity: Array, step: float) -> MotionStep:
         constant,
         averaged=True,
     )
+
+
+def load_weights(share: float, ratio: float) -> tuple[float, float, float]:
+    """Weights that make a fluid's load at the point of equilibrium of those at the ends of the last steps.
+
+    They are exact for loads linear in time. A load that changes its sign in every step would hardly be felt, by the
+    midpoint rule not at all, if it were interpolated within the step: whatever is light beside the fluid that it moves
+    could oscillate so undamped, for the fluid's backward differences resist by just such a load. With equal steps h the
+    weights are those of an average (1 + s) fⁿ⁺¹/2 + (1 - s) fⁿ/2 made twice, which leaves s² of such a load.
+
+    Parameters
+    ----------
+    share : float
+        s, in (0, 1].
+    ratio : float
+        Size of the step before over that of this one; 0 if only one earlier load is known.
+
+    Returns
+    -------
+    tuple of float
+        Of fⁿ⁺¹, fⁿ and fⁿ⁻¹.
+    """
+    oldest = 0.25 * (1.0 - share) ** 2 if ratio else 0.0
+    middle = 1.0 - share - oldest * (1.0 + ratio)
+    return 1.0 - middle - oldest, middle, oldest
 
 
 def _history(weights: Array, values: Sequence[Array]) -> Array:
