@@ -14,7 +14,8 @@ from hofsi.records import CouplingRecord, State
 if TYPE_CHECKING:
     from hofsi.motion import MeshMotion, MeshState
     from hofsi.solvers.fluid import FluidSolver
-    from hofsi.solvers.solid import SolidSolver
+    from hofsi.solvers.fluid_memory import FluidMemory
+    from hofsi.solvers.solid import SolidMemory, SolidSolver
 
 Array = NDArray[np.float64]
 
@@ -34,6 +35,21 @@ class March(Protocol):
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         """Return the state at rest."""
+        ...
+
+    def memory(self) -> object:
+        """What is kept between steps besides the state: a frozen dataclass of arrays, numbers and others like it.
+
+        It is that of the last step that was accepted when it is asked for before the next one begins, and stays as it
+        is then.
+        """
+        ...
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the march was at a state; TypeError if the memory is not one of its own.
+
+        Arrays of the memory that are those of the state, or of the mesh, are the same objects.
+        """
         ...
 
 
@@ -97,6 +113,19 @@ class FluidMarch:
             step.solve(np.zeros((0, 2)))
             return State(fluid=step.accept(), mesh=state.mesh), None
 
+    def memory(self) -> FluidMemory:
+        """What the solver keeps."""
+        return self._solver.memory()
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the solver was at a state."""
+        from hofsi.solvers.fluid_memory import FluidMemory
+
+        assert state.fluid is not None
+        if not isinstance(memory, FluidMemory):
+            raise TypeError(f"memory: got {type(memory).__name__}; expected FluidMemory, of a fluid alone.")
+        self._solver.resume(memory, state.fluid)
+
 
 class SolidMarch:
     """A solid alone."""
@@ -121,3 +150,15 @@ class SolidMarch:
         with self._clock.phase("solid"):
             step = self._solver.begin_static(state.solid)
             return State(solid=step.accept(step.solve(None))), None
+
+    def memory(self) -> SolidMemory:
+        """What the solver keeps."""
+        return self._solver.memory()
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the solver was at a state."""
+        from hofsi.solvers.solid import SolidMemory
+
+        if not isinstance(memory, SolidMemory):
+            raise TypeError(f"memory: got {type(memory).__name__}; expected SolidMemory, of a solid alone.")
+        self._solver.resume(memory)

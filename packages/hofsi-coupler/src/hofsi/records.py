@@ -12,8 +12,10 @@ if TYPE_CHECKING:
     from hofsi.motion import MeshState
     from hofsi.solvers.fluid_state import FluidState
     from hofsi.solvers.solid import SolidState
+    from hofsi.timestepping.control import ControlMemory
+    from hofsi.timestepping.local_error import ErrorMemory
 
-__all__ = ["CouplingRecord", "Rejection", "State", "StepRecord"]
+__all__ = ["CouplingRecord", "Rejection", "RunMemory", "State", "StepRecord"]
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,28 @@ class Rejection:
     reason: str
 
 
+@dataclass(frozen=True, eq=False)
+class RunMemory:
+    """What a run knows after a step besides the state: the next step depends on it.
+
+    Attributes
+    ----------
+    sizes : tuple of float
+        Of the last steps, newest first.
+    control : ControlMemory
+        Which step comes next.
+    errors : ErrorMemory or None
+        What local errors are estimated from; None if they are not.
+    march : object
+        What `hofsi.marching.March.memory` returned.
+    """
+
+    sizes: tuple[float, ...]
+    control: ControlMemory
+    errors: ErrorMemory | None
+    march: object
+
+
 @dataclass(frozen=True)
 class StepRecord:
     """One finished step.
@@ -85,6 +109,8 @@ class StepRecord:
         Estimate for this step, see `hofsi.timestepping.local_error`; None if there is none.
     rejected : tuple of Rejection
         Larger steps that were tried before this one, in that order.
+    memory : RunMemory or None
+        What `hofsi.simulate.simulate` needs to go on after this step; None for a steady state.
     """
 
     step: int
@@ -96,3 +122,4 @@ class StepRecord:
     done: float = 0.0
     local_error: float | None = None
     rejected: tuple[Rejection, ...] = ()
+    memory: RunMemory | None = field(default=None, repr=False, compare=False)

@@ -19,12 +19,13 @@ from hofsi.errors import ConvergenceError, CouplingError
 from hofsi.motion import MeshMotion, MeshState
 from hofsi.records import CouplingRecord, State
 from hofsi.solvers.fluid import FluidSolver, FluidState, FluidStep
-from hofsi.solvers.solid import SolidSolver, SolidState, SolidStep
+from hofsi.solvers.fluid_memory import FluidMemory
+from hofsi.solvers.solid import SolidMemory, SolidSolver, SolidState, SolidStep
 from hofsi.timestepping.schemes import bdf_weights
 
 Array = NDArray[np.float64]
 
-__all__ = ["CoupledMarch"]
+__all__ = ["CoupledMarch", "CoupledMemory"]
 
 _HISTORY = 4  # interface displacements kept: a cubic predictor needs four
 _SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
@@ -41,6 +42,26 @@ class _Fields:
     mesh: MeshState
     solid: SolidStep
     displacement: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CoupledMemory:
+    """What the solvers and their coupling know besides the state.
+
+    Attributes
+    ----------
+    fluid : FluidMemory
+    solid : SolidMemory
+    accelerator : object
+        What `hofsi.coupling.relaxation.Accelerator.memory` returned.
+    largest : (float, float)
+        Norms of the largest displacement and force of the run.
+    """
+
+    fluid: FluidMemory
+    solid: SolidMemory
+    accelerator: object
+    largest: tuple[float, float]
 
 
 class CoupledMarch:
@@ -86,6 +107,20 @@ class CoupledMarch:
         d = solid.displacement[self._interface.solid]
         mesh = self._motion.move(self._motion.reference, self._driven(d, time), time)
         return State(self._fluid.initial_state(time, mesh.mesh.points), solid, mesh, (d,))
+
+    def memory(self) -> CoupledMemory:
+        """What is kept between steps besides the state."""
+        return CoupledMemory(self._fluid.memory(), self._solid.memory(), self._accelerator.memory(), self._test.largest)
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the solvers and the coupling were at a state."""
+        fluid = _parts(state)[0]
+        if not isinstance(memory, CoupledMemory):
+            raise TypeError(f"memory: got {type(memory).__name__}; expected CoupledMemory, of a coupled problem.")
+        self._fluid.resume(memory.fluid, fluid)
+        self._solid.resume(memory.solid)
+        self._accelerator.recall(memory.accelerator)
+        self._test.recall(memory.largest)
 
     def _driven(self, d: Array, time: float) -> Array:
         displacement = self._prescribed(time)

@@ -79,6 +79,8 @@ class CondensedSystem:
         Numbers of these of each element, among ``unknowns``; -1 where constrained.
     exact : bool
         Whether factors solve exactly, so that they can serve another matrix as preconditioner.
+    origin : object
+        What the pattern was made from, for its owner.
     """
 
     exact = True
@@ -94,6 +96,7 @@ class CondensedSystem:
         copies: Index | None = None,
     ) -> None:
         self.dofs, self.boundary, self.size = dofs, boundary, size
+        self.origin: object = None
         self.copies = copies
         self._solver: Callable[[sp.csc_matrix], Solver] = DirectFactor
         self._places = places

@@ -12,6 +12,7 @@ from hoblock import QuadMesh
 from hofsi import case
 from hofsi.counts import Counts
 from hofsi.errors import ConvergenceError, NewtonError
+from hofsi.linear.checked import CheckedSolver
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_newton import SolidNewton, Tangent
 from hofsi.solvers.solid_rest import check_held
@@ -21,7 +22,7 @@ from hofsi.timestepping.second_order import MotionStep, backward_difference, gen
 
 Array = NDArray[np.float64]
 
-__all__ = ["SolidSolver", "SolidState", "SolidStep"]
+__all__ = ["SolidMemory", "SolidSolver", "SolidState", "SolidStep"]
 
 
 def _frozen(array: Array) -> Array:
@@ -73,6 +74,25 @@ class SolidState:
     def velocity(self) -> Array:
         """Newest velocity."""
         return self.velocities[0]
+
+
+@dataclass(frozen=True, eq=False)
+class SolidMemory:
+    """What a solver knows besides the state.
+
+    Attributes
+    ----------
+    counts : Counts
+        A copy.
+    mass_factor : float or None
+        Of the tangent that is kept for later steps; None if there is none.
+    fell_back : bool
+        Whether its factors are those of the fallback.
+    """
+
+    counts: Counts
+    mass_factor: float | None = None
+    fell_back: bool = False
 
 
 class SolidSolver:
@@ -181,6 +201,29 @@ class SolidSolver:
         """Keep a tangent for later steps if it holds for them: if all solids are linear."""
         if self.equations.linear:
             self._tangent = tangent
+
+    def memory(self) -> SolidMemory:
+        """What is kept between steps, so that `resume` can make it again."""
+        kept = self._tangent
+        if kept is None:
+            return SolidMemory(self.counts.copy())
+        factor = kept.factor.factor
+        return SolidMemory(self.counts.copy(), kept.mass_factor, isinstance(factor, CheckedSolver) and factor.fell_back)
+
+    def resume(self, memory: SolidMemory) -> None:
+        """Become what the solver was when `memory` was asked for.
+
+        The tangent of linear solids depends on neither displacement nor loads.
+        """
+        self._tangent = None
+        if memory.mass_factor is not None and self.equations.linear:
+            gradient = self.equations.gradient(np.zeros(self.mesh.points.shape))
+            K = self.equations.tangent(gradient, self.equations.stress(gradient), memory.mass_factor, ())
+            factor = self.system.factorise(K)
+            if memory.fell_back and isinstance(factor.factor, CheckedSolver):
+                factor.factor.fall_back()
+            self._tangent = Tangent(memory.mass_factor, K, factor)
+        self.counts.recall(memory.counts)
 
     def tangent(self, mass_factor: float) -> Tangent | None:
         """Return the tangent that was kept, if it holds for a step with this mass factor."""
