@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         LinearSolverError,
         MeshMotionError,
         NewtonError,
+        RestartError,
     )
     from hofsi.io.scene import load_case, read_case
     from hofsi.quantities import evaluators
@@ -47,6 +48,7 @@ _MODULES = {
     "LinearSolverError": "hofsi.errors",
     "MeshMotionError": "hofsi.errors",
     "NewtonError": "hofsi.errors",
+    "RestartError": "hofsi.errors",
     "Problem": "hofsi.build",
     "Result": "hofsi.run",
     "State": "hofsi.records",
@@ -67,6 +69,7 @@ __all__ = [
     "MeshMotionError",
     "NewtonError",
     "Problem",
+    "RestartError",
     "Result",
     "State",
     "StepRecord",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.clock import Clock
-from hofsi.records import CouplingRecord, State
+from hofsi.records import CouplingRecord, MarchMemory, State
 
 if TYPE_CHECKING:
     from hofsi.motion import MeshMotion, MeshState
@@ -37,8 +37,8 @@ class March(Protocol):
         """Return the state at rest."""
         ...
 
-    def memory(self) -> object:
-        """What is kept between steps besides the state: a frozen dataclass of arrays, numbers and others like it.
+    def memory(self) -> MarchMemory:
+        """What is kept between steps besides the state.
 
         It is that of the last step that was accepted when it is asked for before the next one begins, and stays as it
         is then.

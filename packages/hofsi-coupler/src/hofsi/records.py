@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hofsi.timestepping.control import ControlMemory
     from hofsi.timestepping.local_error import ErrorMemory
 
-__all__ = ["CouplingRecord", "Rejection", "RunMemory", "State", "StepRecord"]
+__all__ = ["CouplingRecord", "MarchMemory", "Rejection", "RunMemory", "State", "StepRecord"]
 
 
 @dataclass(frozen=True)
@@ -66,6 +66,14 @@ class Rejection:
     reason: str
 
 
+class MarchMemory(Protocol):
+    """What solvers know besides the state: a frozen dataclass of arrays, numbers and others like it."""
+
+    def without_factors(self) -> MarchMemory:
+        """Return the same without what matrices were made from, for a case with other matrices."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class RunMemory:
     """What a run knows after a step besides the state: the next step depends on it.
@@ -78,14 +86,14 @@ class RunMemory:
         Which step comes next.
     errors : ErrorMemory or None
         What local errors are estimated from; None if they are not.
-    march : object
+    march : MarchMemory
         What `hofsi.marching.March.memory` returned.
     """
 
     sizes: tuple[float, ...]
     control: ControlMemory
     errors: ErrorMemory | None
-    march: object
+    march: MarchMemory
 
 
 @dataclass(frozen=True)

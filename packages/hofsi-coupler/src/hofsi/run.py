@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 from hoblock.errors import MissingExtraError, SceneError
 from hofsi.build import Problem, build
-from hofsi.case import Case, OutputSettings, Steady
+from hofsi.case import Case, OutputSettings, Steady, TimeSettings
 from hofsi.errors import ConvergenceError
-from hofsi.io.summary import machine, versions, write_summary
+from hofsi.interruptions import Interruptions
+from hofsi.io.summary import count_summary, machine, phase_seconds, versions, write_summary
 from hofsi.memory import keep_freed_memory
 from hofsi.notes import notes
+from hofsi.observers.checkpoint import CheckpointWriter
 from hofsi.observers.divisions import DivisionWatch
 from hofsi.observers.observer import Observer
 from hofsi.observers.progress import Progress
@@ -27,8 +29,10 @@ from hofsi.observers.quality import MeshQuality
 from hofsi.observers.table import QuantityTable, StepTable
 from hofsi.quantities import evaluators
 from hofsi.records import StepRecord
+from hofsi.resume import Resumption, resumption, take_tables
 from hofsi.simulate import simulate
 from hofsi.statistics import statistics
+from hofsi.timestepping.control import StepControl
 
 if TYPE_CHECKING:
     from hofsi.observers.resolution import FlowResolutionWatch
@@ -67,13 +71,20 @@ class Result:
 
 
 def run(
-    case: Case, directory: str | os.PathLike[str], *, progress: TextIO | None = None, changes: Sequence[str] = ()
+    case: Case,
+    directory: str | os.PathLike[str],
+    *,
+    progress: TextIO | None = None,
+    changes: Sequence[str] = (),
+    resume: str | os.PathLike[str] | None = None,
 ) -> Result:
     """Build a case, simulate it, and write what comes out.
 
     The directory gets ``quantities.csv`` and ``steps.csv``, which grow during the run, ``summary.json``, and, as the
     case asks for them, ``fluid.pvd``, ``solid.pvd`` and plots. All of them are written for a run that fails or is
-    interrupted, too, with what was computed until then.
+    interrupted, too, with what was computed until then; it then leaves ``restart.npz`` as well, from which the run can
+    be resumed after its last finished step. Resumed without changes it ends with the same files, to the bit, as if it
+    had never stopped, but for the seconds it took. Files of steps after that of the restart file are removed.
 
     Parameters
     ----------
@@ -84,6 +95,9 @@ def run(
         Where to show a live line, for example ``sys.stderr``.
     changes : sequence of str, optional
         The changes that were made to the scene, ``"mesh.order=6"`` for example; they are noted in the summary.
+    resume : path-like, optional
+        A restart file to go on from, usually ``restart.npz`` in the directory. Times, settings and values of the case
+        may be others than in the run that wrote it; the notes list them.
 
     Returns
     -------
@@ -96,10 +110,13 @@ def run(
         If the case cannot be built; nothing is written then.
     MissingExtraError
         If a package for fields or plots is missing; nothing is computed then.
+    RestartError
+        If the restart file cannot be read, or the case cannot go on from it; nothing is written then.
     OSError
         If the directory cannot be written.
     KeyboardInterrupt
-        After everything has been written, with the status "interrupted".
+        After everything has been written, with the status "interrupted"; for SIGTERM it is
+        `hofsi.interruptions.Terminated`.
     """
     began = perf_counter()
     keep_freed_memory()
@@ -108,13 +125,16 @@ def run(
         problem = build(case)
         with problem.clock.phase("build"):
             read, known = evaluators(problem), notes(problem)
+            start = None if resume is None else resumption(problem, Path(resume))
     except SceneError as error:
         error.file = error.file or case.file
         raise
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
-    report = _Report(problem, folder, read, progress, began, changes)
-    for text in known:
+    if resume is not None:
+        take_tables(Path(resume).parent, folder)
+    report = _Report(problem, folder, read, progress, began, changes, start)
+    for text in known if start is None else start.notes:
         report.note(text)
     return report.follow()
 
@@ -130,6 +150,15 @@ def _check_plotting(output: OutputSettings) -> None:
         )
 
 
+def _step_count(time: TimeSettings, start: Resumption | None) -> int | None:
+    """How many of the scene's steps a run has in all; None if it is steady."""
+    if isinstance(time, Steady):
+        return None
+    if start is None or start.record.memory is None:
+        return time.steps
+    return StepControl.resumed(time, start.record.memory.control, start.record.time, start.record.dt).total
+
+
 class _Report:
     """The observers of one run and its summary."""
 
@@ -141,34 +170,66 @@ class _Report:
         progress: TextIO | None,
         began: float,
         changes: Sequence[str],
+        start: Resumption | None,
     ) -> None:
         self._problem, self._folder, self._began, self._changes = problem, folder, began, changes
+        self._start = start
+        kept = {} if start is None else start.observers
+        sizes = {name: None if start is None else kept[name]["size"] for name in ("quantities", "steps")}
         time, output = problem.case.time, problem.case.output
         self._last: StepRecord | None = None
         self._quality = MeshQuality(None if problem.fluid is not None or problem.solid is None else problem.solid.mesh)
-        self._observers: list[tuple[str, Observer]] = []
+        self._quantities = QuantityTable(folder / "quantities.csv", read, sizes["quantities"])
+        self._steps = StepTable(folder / "steps.csv", problem.counts, kept=sizes["steps"])
+        self._notes: list[str] = []
+        self._live = None if progress is None else Progress(progress, _step_count(time, start))
+        self._observers: dict[str, tuple[str, Observer]] = {}  # with the phase that their time counts for
+        if self._live is not None:
+            self._observers["progress"] = ("tables", self._live)
+        # What is cheap and must not be lost comes first.
+        self._observers["quantities"] = ("quantities", self._quantities)
+        self._observers["steps"] = ("tables", self._steps)
+        self._observers["quality"] = ("quality", self._quality)
         if output.fields:
             with problem.clock.phase("fields"):
                 from hofsi.observers.fields import FieldWriter
 
-                self._observers.append(("fields", FieldWriter(problem, folder, output.every)))
-        self._quantities = QuantityTable(folder / "quantities.csv", read)
-        self._steps = StepTable(folder / "steps.csv", problem.counts)
-        # What is cheap and must not be lost comes first.
-        self._observers[:0] = [("quantities", self._quantities), ("tables", self._steps), ("quality", self._quality)]
-        self._notes: list[str] = []
-        self._live = None if progress is None else Progress(progress, None if isinstance(time, Steady) else time.steps)
-        if self._live is not None:
-            self._observers.insert(0, ("tables", self._live))
+                self._observers["fields"] = ("fields", FieldWriter(problem, folder, output.every))
         self._divisions = None if isinstance(time, Steady) else DivisionWatch(time, self.note)
         if self._divisions is not None:
-            self._observers.append(("tables", self._divisions))
+            self._observers["divisions"] = ("tables", self._divisions)
         self._resolution: FlowResolutionWatch | None = None
         if problem.fluid is not None and problem.fluid.solver.convecting:
             from hofsi.observers.resolution import FlowResolutionWatch
 
             self._resolution = FlowResolutionWatch(problem.fluid, self.note)
-            self._observers.append(("quality", self._resolution))
+            self._observers["resolution"] = ("quality", self._resolution)
+        self._checkpoint = CheckpointWriter(problem, folder, output.checkpoint_every, self._memory)
+        self._observers["checkpoint"] = ("checkpoints", self._checkpoint)
+        if start is None:
+            self._checkpoint.path.unlink(missing_ok=True)  # of an earlier run: it would not go on with this one
+        else:
+            self._recall(start)
+
+    def _memory(self) -> dict[str, Any]:
+        """What the observers know, and this report."""
+        own = {
+            "notes": list(self._notes),
+            "seconds": dict(self._problem.clock.seconds),
+            "total": perf_counter() - self._began,
+        }
+        return {"report": own, **{name: observer.memory() for name, (_, observer) in self._observers.items()}}
+
+    def _recall(self, start: Resumption) -> None:
+        """Go on from what was known when the restart file was written."""
+        own = start.observers["report"]
+        self._last, self._notes, seconds = start.record, list(own["notes"]), self._problem.clock.seconds
+        for name, spent in own["seconds"].items():
+            seconds[name] = seconds.get(name, 0.0) + spent
+        self._began -= own["total"]
+        for name, (_, observer) in self._observers.items():
+            if name in start.observers:
+                observer.recall(start.observers[name], start.record)
 
     def note(self, text: str) -> None:
         """Tell the user something, and keep it for the summary."""
@@ -181,25 +242,37 @@ class _Report:
         status: Status = "failed"
         reason = ""
         self._write("running", "")
-        try:
-            for record in simulate(self._problem):
-                self._last = record
-                for phase, observer in self._observers:
-                    with self._problem.clock.phase(phase):
-                        observer.observe(record)
-            steady = isinstance(self._problem.case.time, Steady)
-            status, reason = "completed", "steady state found" if steady else "end of the time interval reached"
-        except ConvergenceError as error:
-            reason = str(error)
-        except KeyboardInterrupt:
-            status, reason = "interrupted", f"interrupted {self._when()}"
-            raise
-        except BaseException as error:
-            reason = f"{type(error).__name__}: {error}"
-            raise
-        finally:
-            summary = self._finish(status, reason)
+        with Interruptions() as interruptions:
+            try:
+                for record in simulate(self._problem, None if self._start is None else self._start.record):
+                    with interruptions.held():
+                        self._observe(record)
+                if self._problem.case.output.checkpoint_every is not None:
+                    self._checkpoint.write()
+                steady = isinstance(self._problem.case.time, Steady)
+                status, reason = "completed", "steady state found" if steady else "end of the time interval reached"
+            except ConvergenceError as error:
+                reason = str(error)
+                if self._last is not None and self._checkpoint.write():
+                    reason += f" The last good state, t = {self._last.time:g}, is in {self._checkpoint.path}."
+            except KeyboardInterrupt:
+                interruptions.hold()
+                status, reason = "interrupted", f"interrupted {self._when()}"
+                self._checkpoint.write()
+                raise
+            except BaseException as error:
+                reason = f"{type(error).__name__}: {error}"
+                raise
+            finally:
+                interruptions.hold()
+                summary = self._finish(status, reason)
         return Result(status, reason, self._folder, summary, self._quantities.times, self._quantities.series)
+
+    def _observe(self, record: StepRecord) -> None:
+        self._last = record
+        for phase, observer in self._observers.values():
+            with self._problem.clock.phase(phase):
+                observer.observe(record)
 
     def _when(self) -> str:
         if self._last is None:
@@ -208,7 +281,7 @@ class _Report:
 
     def _finish(self, status: Status, reason: str) -> dict[str, Any]:
         try:
-            self._close(0)
+            self._close([*self._observers.values()])
         finally:
             summary = self._write(status, reason)
         if self._problem.case.output.plots and self._last is not None:
@@ -217,15 +290,15 @@ class _Report:
             summary = self._write(status, reason)
         return summary
 
-    def _close(self, first: int) -> None:
-        """Close all observers, the others even if one of them fails."""
-        if first < len(self._observers):
-            phase, observer = self._observers[first]
+    def _close(self, observers: Sequence[tuple[str, Observer]]) -> None:
+        """Close observers, the others even if one of them fails."""
+        if observers:
+            phase, observer = observers[0]
             try:
                 with self._problem.clock.phase(phase):
                     observer.close()
             finally:
-                self._close(first + 1)
+                self._close(observers[1:])
 
     def _plot(self, record: StepRecord) -> None:
         from hofsi.plot import plot_run
@@ -246,8 +319,8 @@ class _Report:
             "scene": {"title": case.title, "file": Path(case.file).name, "changes": list(self._changes)},
             "versions": versions(),
             "machine": machine(),
-            "seconds": self._seconds(),
-            "counts": self._counts(),
+            "seconds": phase_seconds(self._problem.clock, perf_counter() - self._began),
+            "counts": count_summary(self._problem, self._steps.sums),
             "t": None if self._last is None else self._last.time,
             "time_steps": {} if self._divisions is None else self._divisions.summary(),
             "notes": list(self._notes),
@@ -256,30 +329,3 @@ class _Report:
             "period_of": case.output.period_of,
             "quantities": {name: asdict(values) for name, values in numbers.items()},
         }
-
-    def _seconds(self) -> dict[str, float]:
-        total = perf_counter() - self._began
-        phases = dict(self._problem.clock.seconds)
-        phases["other"] = max(0.0, total - sum(phases.values()))
-        return {name: round(seconds, 4) for name, seconds in {"total": total, **phases}.items()}
-
-    def _counts(self) -> dict[str, Any]:
-        steps, problem = self._steps, self._problem
-        counts: dict[str, Any] = {
-            "steps": steps.steps,
-            "coupling_iterations": steps.coupling_iterations,
-            "assemblies": sum(count.assemblies for count in problem.counts.values()),
-            "factorisations": sum(count.factorisations for count in problem.counts.values()),
-            "blocks_regenerated": steps.blocks_regenerated,
-            "mesh_jumps": steps.mesh_jumps,
-        }
-        if problem.fluid is not None:
-            fluid = problem.fluid
-            size = {"elements": len(fluid.mesh.cells), "unknowns": fluid.solver.space.size}
-            moving = {} if fluid.motion is None else {f"moving_{name}": n for name, n in fluid.motion.moving.items()}
-            counts["fluid"] = {**size, **moving, **asdict(fluid.solver.counts)}
-        if problem.solid is not None:
-            solid = problem.solid
-            size = {"elements": len(solid.mesh.cells), "unknowns": 2 * len(solid.mesh.points)}
-            counts["solid"] = {**size, **asdict(solid.solver.counts)}
-        return counts

@@ -63,6 +63,10 @@ class CoupledMemory:
     accelerator: object
     largest: tuple[float, float]
 
+    def without_factors(self) -> CoupledMemory:
+        """Return the same without what matrices were made from."""
+        return replace(self, fluid=self.fluid.without_factors(), solid=self.solid.without_factors())
+
 
 class CoupledMarch:
     """Strong coupling of a fluid and one or several solids.

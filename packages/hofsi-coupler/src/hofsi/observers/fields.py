@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +74,24 @@ class FieldWriter:
         if self._waiting is not None:
             self._write(self._waiting)
             self._waiting = None
+
+    def memory(self) -> dict[str, Any]:
+        """The series so far, and whether the last step is still to be written if no other follows."""
+        return {"entries": self._entries, "waiting": self._waiting is not None}
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on with the series as it was: what was written later is removed.
+
+        Files that are not there, because the run goes on in another directory, are left out.
+        """
+        for name, entries in memory["entries"].items():
+            here = [(time, file) for time, file in entries if (self._directory / file).is_file()]
+            self._entries[name] = here
+            write_pvd(self._directory / f"{name}.pvd", here)
+            for path in (self._directory / "fields").glob(f"{name}_*.vtu"):
+                if f"fields/{path.name}" not in {file for _, file in here}:
+                    path.unlink()
+        self._waiting = record if memory["waiting"] else None
 
     def _write(self, record: StepRecord) -> None:
         fluid, solid, state = self._problem.fluid, self._problem.solid, record.state

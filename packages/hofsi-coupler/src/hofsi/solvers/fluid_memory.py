@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,3 +52,7 @@ class FluidMemory:
     stokes: bool | None = None
     factors: FactorsMemory | None = None
     cycle: CycleMemory | None = None
+
+    def without_factors(self) -> FluidMemory:
+        """Return the same without what matrices were made from."""
+        return replace(self, constant=None, stokes=None, factors=None, cycle=None)

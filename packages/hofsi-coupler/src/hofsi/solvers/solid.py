@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +93,10 @@ class SolidMemory:
     counts: Counts
     mass_factor: float | None = None
     fell_back: bool = False
+
+    def without_factors(self) -> SolidMemory:
+        """Return the same without the tangent."""
+        return replace(self, mass_factor=None)
 
 
 class SolidSolver:

@@ -96,8 +96,9 @@ class StepControl:
 
         Notes
         -----
-        If ``dt`` or ``halvings`` is another one, or the last step was cut short by an end that is further away now, steps
-        of ``dt`` are counted from ``now``. With a tolerance the first of them is not larger than the last one was.
+        If ``dt`` or ``halvings`` is another one, or the last step was cut short by an end that is further away now,
+        steps of ``dt`` are counted from ``now``. With a tolerance the first of them is not larger than the last one
+        was.
         """
         steps = _continued(time, memory)
         if steps is None:
@@ -112,6 +113,11 @@ class StepControl:
             control._before = memory.before
         control.finished = control._whole > control._case.steps
         return control
+
+    @property
+    def total(self) -> int:
+        """Whole steps of the run, those behind included."""
+        return self._before + self._case.steps
 
     @property
     def _stride(self) -> int:
