@@ -145,8 +145,8 @@ def break_off(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
     """Let the simulation raise an exception after its second step."""
     simulate = RUN.simulate
 
-    def broken(problem: Problem) -> Iterator[StepRecord]:
-        for record in simulate(problem):
+    def broken(problem: Problem, after: StepRecord | None = None) -> Iterator[StepRecord]:
+        for record in simulate(problem, after):
             if record.step == 3:
                 raise error
             yield record

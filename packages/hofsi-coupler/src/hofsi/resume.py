@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,12 +14,12 @@ from hofsi.case_values import Change, case_values, changes
 from hofsi.errors import RestartError
 from hofsi.io.restart_file import RestartFile, read_restart
 from hofsi.io.summary import versions
+from hofsi.observers.table import STEP_COLUMNS, check_table, quantity_columns
 from hofsi.records import StepRecord
 
 __all__ = ["Resumption", "resumption", "take_tables"]
 
 _NUMERICAL = ("numpy", "scipy", "hoblock", "hofsi")  # packages on which rounding depends
-_TABLES = ("quantities.csv", "steps.csv")
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,20 +95,26 @@ def _without_factors(record: StepRecord) -> StepRecord:
     return record if memory is None else replace(record, memory=replace(memory, march=memory.march.without_factors()))
 
 
-def take_tables(source: Path, folder: Path) -> None:
-    """Copy the tables of a run that goes on in another directory; what is in the way there is replaced.
+def take_tables(source: Path, folder: Path, start: Resumption, quantities: Iterable[str]) -> None:
+    """Check the tables of a run that goes on, and copy them if it does so in another directory.
+
+    Parameters
+    ----------
+    source, folder : Path
+        Where they are, and where they go on; what is in the way there is replaced.
+    start : Resumption
+    quantities : iterable of str
+        Their names.
 
     Raises
     ------
     RestartError
-        If they are not beside the restart file.
+        If they are not beside the restart file, or are not those that were there when it was written.
     """
-    if source.resolve() == folder.resolve():
-        return
-    for name in _TABLES:
-        if not (source / name).is_file():
-            raise RestartError(
-                f"{source / name}: there is no such file; expected the tables of the run beside its restart file. Put "
-                "them there, or run from the start, without --resume."
-            )
-        shutil.copyfile(source / name, folder / name)
+    columns = {"quantities": quantity_columns(quantities), "steps": STEP_COLUMNS}
+    for name, own in columns.items():
+        check_table(source / f"{name}.csv", own, start.observers[name]["size"])
+    folder.mkdir(parents=True, exist_ok=True)
+    if source.resolve() != folder.resolve():
+        for name in columns:
+            shutil.copyfile(source / f"{name}.csv", folder / f"{name}.csv")

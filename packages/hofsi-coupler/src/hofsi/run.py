@@ -130,9 +130,9 @@ def run(
         error.file = error.file or case.file
         raise
     folder = Path(directory)
+    if start is not None and resume is not None:
+        take_tables(Path(resume).parent, folder, start, read)
     folder.mkdir(parents=True, exist_ok=True)
-    if resume is not None:
-        take_tables(Path(resume).parent, folder)
     report = _Report(problem, folder, read, progress, began, changes, start)
     for text in known if start is None else start.notes:
         report.note(text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -18,7 +18,7 @@ from hofsi.records import StepRecord
 
 Array = NDArray[np.float64]
 
-__all__ = ["QuantityTable", "STEP_COLUMNS", "StepTable"]
+__all__ = ["QuantityTable", "STEP_COLUMNS", "StepTable", "check_table", "quantity_columns"]
 
 STEP_COLUMNS = (
     "step",
@@ -54,7 +54,7 @@ class _Lines:
     def __init__(self, path: str | os.PathLike[str], columns: Sequence[str], kept: int | None = None) -> None:
         path = Path(path)
         if kept is not None:
-            _cut(path, columns, kept)
+            os.truncate(path, kept)
         self._file = path.open("w" if kept is None else "a", encoding="utf-8", newline="")
         self._writer = csv.writer(self._file, lineterminator="\n")
         if kept is None:
@@ -76,13 +76,13 @@ class _Lines:
         self._file.close()
 
 
-def _cut(path: Path, columns: Sequence[str], kept: int) -> None:
-    """Cut a table off after some bytes.
+def check_table(path: Path, columns: Sequence[str], kept: int) -> None:
+    """Check that a table can be cut off after some bytes and continued.
 
     Raises
     ------
     RestartError
-        If there are not so many, or the columns are others.
+        If it has not so many, or other columns.
     """
     size = path.stat().st_size if path.is_file() else 0
     if size < kept:
@@ -90,19 +90,23 @@ def _cut(path: Path, columns: Sequence[str], kept: int) -> None:
             f"{path}: has {size} bytes; expected at least the {kept} that it had when the restart file was written. Go "
             "on in the directory of that run, or in a new one, or run from the start, without --resume."
         )
-    with path.open("r+b") as file:
+    with path.open("rb") as file:
         head = file.readline().decode("utf-8", "replace").rstrip()
-        if head != ",".join(columns):
-            raise RestartError(
-                f"{path}: has the columns {head!r}; expected {','.join(columns)!r}. Go on in the directory of the run, "
-                "or run from the start, without --resume."
-            )
-        file.truncate(kept)
+    if head != ",".join(columns):
+        raise RestartError(
+            f"{path}: has the columns {head!r}; expected {','.join(columns)!r}. Go on in the directory of the run, or run "
+            "from the start, without --resume."
+        )
 
 
 def _rounded(time: float) -> float:
     """A time without the rounding error of its last digits: 0.3 and not 0.30000000000000004."""
     return float(f"{time:.12g}")
+
+
+def quantity_columns(names: Iterable[str]) -> tuple[str, ...]:
+    """Columns of ``quantities.csv``."""
+    return ("step", "t", *names)
 
 
 class QuantityTable:
@@ -115,12 +119,7 @@ class QuantityTable:
     evaluators : mapping of str to callable
         See `hofsi.quantities.evaluators`.
     kept : int, optional
-        Bytes of the file that are kept, in a run that goes on; by default it is written anew.
-
-    Raises
-    ------
-    RestartError
-        If the file has fewer bytes, or other columns.
+        Bytes of the file that are kept, in a run that goes on, see `check_table`; by default it is written anew.
     """
 
     def __init__(
@@ -132,7 +131,7 @@ class QuantityTable:
         self._evaluators = dict(evaluators)
         self._times: list[float] = []
         self._values: dict[str, list[float]] = {name: [] for name in evaluators}
-        self._lines = _Lines(path, ("step", "t", *evaluators), kept)
+        self._lines = _Lines(path, quantity_columns(evaluators), kept)
 
     @property
     def times(self) -> Array:
