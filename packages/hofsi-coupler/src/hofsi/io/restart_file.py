@@ -158,7 +158,7 @@ def read_restart(path: str | os.PathLike[str]) -> RestartFile:
             "off, and as output.checkpoint_every says. Name another file, or run from the start, without --resume."
         )
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             head = _read(archive, "head")
             if head["name"] != _NAME:
                 raise ValueError(f"name {head['name']!r}")

@@ -33,6 +33,7 @@ class CheckpointWriter:
         self, problem: Problem, directory: Path, every: int | None, gather: Callable[[], Mapping[str, object]]
     ) -> None:
         self.path = directory / RESTART_FILE
+        self.path.with_name(f"{RESTART_FILE}.part").unlink(missing_ok=True)  # of a run that was killed while it wrote
         self._problem, self._every, self._gather = problem, every, gather
         self._last: StepRecord | None = None
         self._written = False

@@ -80,7 +80,7 @@ class FieldWriter:
         return {"entries": self._entries, "waiting": self._waiting is not None}
 
     def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
-        """Go on with the series as it was: what was written later is removed.
+        """Go on with the series as it was: what was written later, or not to the end, is removed.
 
         Files that are not there, because the run goes on in another directory, are left out.
         """
@@ -88,7 +88,7 @@ class FieldWriter:
             here = [(time, file) for time, file in entries if (self._directory / file).is_file()]
             self._entries[name] = here
             write_pvd(self._directory / f"{name}.pvd", here)
-            for path in (self._directory / "fields").glob(f"{name}_*.vtu"):
+            for path in (self._directory / "fields").glob(f"{name}_*.vtu*"):
                 if f"fields/{path.name}" not in {file for _, file in here}:
                     path.unlink()
         self._waiting = record if memory["waiting"] else None

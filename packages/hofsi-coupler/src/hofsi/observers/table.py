@@ -94,8 +94,8 @@ def check_table(path: Path, columns: Sequence[str], kept: int) -> None:
         head = file.readline().decode("utf-8", "replace").rstrip()
     if head != ",".join(columns):
         raise RestartError(
-            f"{path}: has the columns {head!r}; expected {','.join(columns)!r}. Go on in the directory of the run, or run "
-            "from the start, without --resume."
+            f"{path}: has the columns {head!r}; expected {','.join(columns)!r}. Go on in the directory of the run, or "
+            "run from the start, without --resume."
         )
 
 
