@@ -126,6 +126,8 @@ def _leaves(key: str, value: object) -> Iterator[tuple[str, str]]:
     elif isinstance(value, Mapping):
         for name, member in value.items():
             yield from _leaves(f"{key}.{name}", member)
+    elif isinstance(value, tuple) and value and all(isinstance(member, Expression) for member in value):
+        yield key, f"[{', '.join(_text_of(member) for member in value)}]"
     elif isinstance(value, tuple | list) and any(is_dataclass(member) for member in value):
         yield f"{key}.number", str(len(value))
         for k, member in enumerate(value):
