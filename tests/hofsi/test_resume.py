@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import json
 import os
 import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from hofsi.build import Problem
 from hofsi.cli import main
+from hofsi.records import StepRecord
 
 TABLES_ONLY = ["output.fields=false", "output.plots=false"]
 Write = Callable[[str], str]
@@ -174,6 +177,30 @@ def test_steps_chosen_by_their_error_go_on_to_the_bit(flap: str, scene: Write, t
     assert_same(tmp_path / "whole", tmp_path / "parts")
 
 
+@pytest.mark.parametrize("step", [1, 2, 5, 9, 10, 11, 12])
+def test_what_observers_know_goes_on_too(
+    flap: str, scene: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, vtk_module: object, step: int
+) -> None:
+    """Broken off after any step: fields are written every fourth step, quality and resolution looked at every tenth."""
+    text, changes = scene(flap), ["output.plots=false", "output.every=4", "time.end=1.2"]
+    assert run(text, tmp_path / "whole", changes) == 0
+    module = importlib.import_module("hofsi.run")  # the attribute of the package is the function
+    simulate = module.simulate
+
+    def broken(problem: Problem, after: StepRecord | None = None) -> Iterator[StepRecord]:
+        for record in simulate(problem, after):
+            yield record
+            if record.step == step:
+                raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "simulate", broken)
+        assert run(text, tmp_path / "parts", changes) == 130
+    assert run(text, tmp_path / "parts", changes, "--resume") == 0
+    (tmp_path / "parts" / "restart.npz").unlink()
+    assert_same(tmp_path / "whole", tmp_path / "parts")
+
+
 @posix
 @pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
 def test_a_run_that_is_asked_to_end_says_how_to_go_on(
@@ -279,6 +306,49 @@ def test_a_run_may_go_on_in_another_directory(flap: str, scene: Write, tmp_path:
     assert "fluid.viscosity = 0.02 instead of 0.01" in notes
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        "coupling.tolerance=1e-8",
+        "coupling.acceleration='aitken'",
+        "coupling.reuse=1",
+        "coupling.filter=1e-2",
+        "linear.lag=false",
+        "linear.solver='amg'",
+        "nonlinear.tolerance=1e-9",
+        "time.halvings=2",
+        "output.every=3",
+    ],
+)
+def test_settings_of_solvers_may_change_and_results_stay(flap: str, scene: Write, tmp_path: Path, change: str) -> None:
+    if "amg" in change:
+        pytest.importorskip("pyamg")
+    text = scene(changed(flap, ("viscosity = 0.01", 'viscosity = 0.01\nconvection = "newton"')))
+    changes = [*TABLES_ONLY, "output.checkpoint_every=1"]
+    assert run(text, tmp_path / "whole", [*changes, "time.end=0.6"]) == 0
+    assert run(text, tmp_path / "parts", [*changes, "time.end=0.3"]) == 0
+    assert run(text, tmp_path / "parts", [*changes, "time.end=0.6", change], "--resume") == 0
+    one, other = (
+        [float(row["lift"]) for row in rows(tmp_path / name / "quantities.csv")] for name in ("whole", "parts")
+    )
+    np.testing.assert_allclose(other, one, rtol=1e-4)
+    assert f"with {change.partition('=')[0]} = " in " ".join(summary(tmp_path / "parts")["notes"])
+
+
+@pytest.mark.parametrize(
+    "change", ["mover.type='pseudo-solid'", "time.tolerance=1e-2", "solid[0].youngs_modulus=2e3", "constants.U=1.4"]
+)
+def test_what_makes_it_another_problem_may_change_and_is_told(
+    flap: str, scene: Write, tmp_path: Path, change: str
+) -> None:
+    text, changes = scene(flap), [*TABLES_ONLY, "output.checkpoint_every=1"]
+    assert run(text, tmp_path / "out", [*changes, "time.end=0.3"]) == 0
+    assert run(text, tmp_path / "out", [*changes, "time.end=0.5", change], "--resume") == 0
+    key = change.partition("=")[0].replace("constants.U", "fluid.boundary[0].x")
+    assert f"resumed after step 3, t = 0.3, with {key}" in " ".join(summary(tmp_path / "out")["notes"])
+    assert rows(tmp_path / "out" / "quantities.csv")[-1]["t"] == "0.5"
+
+
 def refusal(capsys: pytest.CaptureFixture[str]) -> str:
     output = capsys.readouterr()
     assert output.out == ""
@@ -310,6 +380,36 @@ def test_what_cannot_change_is_refused(
     assert run(text, folder, [*changes, change], "--resume") == 2
     assert message in refusal(capsys)
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def rewritten(path: Path, **changes: object) -> None:
+    """Change what a restart file says of itself."""
+    with np.load(path) as archive:
+        arrays = dict(archive)
+    head = {**json.loads(arrays["head"].tobytes()), **changes}
+    arrays["head"] = np.frombuffer(json.dumps(head).encode(), dtype=np.uint8)
+    with path.open("wb") as file:
+        np.savez(file, **arrays)
+
+
+def test_nodes_that_are_others_are_refused(
+    flap: str, scene: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As those of a mesh file that has changed, although its name has not."""
+    text, folder, changes = scene(flap), tmp_path / "out", [*TABLES_ONLY, "output.checkpoint_every=1", "time.end=0.2"]
+    assert run(text, folder, changes) == 0
+    rewritten(folder / "restart.npz", mesh="0123")
+    assert run(text, folder, changes, "--resume") == 2
+    assert f"mesh: its nodes are not those of the run that wrote {folder / 'restart.npz'}" in refusal(capsys)
+
+
+def test_other_versions_of_libraries_are_told(flap: str, scene: Write, tmp_path: Path) -> None:
+    text, folder, changes = scene(flap), tmp_path / "out", [*TABLES_ONLY, "output.checkpoint_every=1", "time.end=0.2"]
+    assert run(text, folder, changes) == 0
+    rewritten(folder / "restart.npz", versions={**summary(folder)["versions"], "numpy": "0.9"})
+    assert run(text, folder, changes, "--resume") == 0
+    (note,) = (note for note in summary(folder)["notes"] if "resumed" in note)
+    assert note.startswith(f"resumed after step 2, t = 0.2, with numpy {np.__version__} instead of 0.9: rounding may")
 
 
 def test_without_a_restart_file_nothing_can_be_resumed(

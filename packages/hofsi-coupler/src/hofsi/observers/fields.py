@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 __all__ = ["FieldWriter"]
+
+_SERIES = ("fluid", "solid")
 
 
 class FieldWriter:
@@ -84,13 +86,17 @@ class FieldWriter:
 
         Files that are not there, because the run goes on in another directory, are left out.
         """
-        for name, entries in memory["entries"].items():
-            here = [(time, file) for time, file in entries if (self._directory / file).is_file()]
-            self._entries[name] = here
-            write_pvd(self._directory / f"{name}.pvd", here)
-            for path in (self._directory / "fields").glob(f"{name}_*.vtu*"):
-                if f"fields/{path.name}" not in {file for _, file in here}:
-                    path.unlink()
+        for path in (self._directory / "fields").glob("*.vtu*"):
+            series, _, number = path.name.partition("_")
+            if number and series in _SERIES and not _listed(memory["entries"].get(series, ()), path):
+                path.unlink()
+        for name in _SERIES:
+            here = [entry for entry in memory["entries"].get(name, ()) if (self._directory / entry[1]).is_file()]
+            if here:
+                self._entries[name] = here
+                write_pvd(self._directory / f"{name}.pvd", here)
+            else:
+                (self._directory / f"{name}.pvd").unlink(missing_ok=True)
         self._waiting = record if memory["waiting"] else None
 
     def _write(self, record: StepRecord) -> None:
@@ -128,6 +134,10 @@ class FieldWriter:
         entries = self._entries.setdefault(name, [])
         entries.append((record.time, file))
         write_pvd(self._directory / f"{name}.pvd", entries)
+
+
+def _listed(entries: Iterable[tuple[float, str]], path: Path) -> bool:
+    return any(file == f"fields/{path.name}" for _, file in entries)
 
 
 def _vorticity(problem: Problem) -> FluidVorticity | None:
