@@ -17,7 +17,7 @@ from hofsi.io.scene import read_case
 from hofsi.quantities import evaluators
 from hofsi.records import CouplingRecord, State
 from hofsi.simulate import simulate
-from hofsi.solvers.solid import SolidMemory
+from hofsi.solvers.solid_state import SolidMemory
 
 
 class Fragile:

@@ -145,6 +145,18 @@ def test_solids_go_on_to_the_bit(
     check_resumed(case, tmp_path / "restart.npz", 3, 3)
 
 
+@pytest.mark.parametrize(
+    "name", ["factors of earlier steps", "an enclosed flow", "Stokes flow", "an old preconditioner"]
+)
+def test_a_problem_can_go_back_to_an_earlier_step(channel: str, name: str) -> None:
+    if "preconditioner" in name:
+        pytest.importorskip("pyamg")
+    problem = build(case_of(channel, CHANNELS[name]))
+    whole = steps_of(problem, 4)
+    for one, two in zip(whole[1:], steps_of(problem, 3, whole[0]), strict=True):
+        assert dict(leaves(one)) == dict(leaves(two))
+
+
 @pytest.mark.parametrize("name", ["factors of earlier steps", "an old preconditioner"])
 def test_without_what_factors_were_made_from_the_rounding_is_another(channel: str, name: str) -> None:
     """Which is why it is in the file: results would depend on where a run was broken off, if only a little."""

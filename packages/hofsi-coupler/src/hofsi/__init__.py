@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from hofsi.io.scene import load_case, read_case
     from hofsi.quantities import evaluators
     from hofsi.records import CouplingRecord, State, StepRecord
-    from hofsi.run import Result
+    from hofsi.report import Result
 
 _MODULES = {
     "Case": "hofsi.case",
@@ -50,7 +50,7 @@ _MODULES = {
     "NewtonError": "hofsi.errors",
     "RestartError": "hofsi.errors",
     "Problem": "hofsi.build",
-    "Result": "hofsi.run",
+    "Result": "hofsi.report",
     "State": "hofsi.records",
     "StepRecord": "hofsi.records",
     "evaluators": "hofsi.quantities",

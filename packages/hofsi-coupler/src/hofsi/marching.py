@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from hofsi.motion import MeshMotion, MeshState
     from hofsi.solvers.fluid import FluidSolver
     from hofsi.solvers.fluid_memory import FluidMemory
-    from hofsi.solvers.solid import SolidMemory, SolidSolver
+    from hofsi.solvers.solid import SolidSolver
+    from hofsi.solvers.solid_state import SolidMemory
 
 Array = NDArray[np.float64]
 
@@ -157,7 +158,7 @@ class SolidMarch:
 
     def resume(self, state: State, memory: object) -> None:
         """Become what the solver was at a state."""
-        from hofsi.solvers.solid import SolidMemory
+        from hofsi.solvers.solid_state import SolidMemory
 
         if not isinstance(memory, SolidMemory):
             raise TypeError(f"memory: got {type(memory).__name__}; expected SolidMemory, of a solid alone.")

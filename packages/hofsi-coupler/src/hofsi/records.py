@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from hofsi.motion import MeshState
     from hofsi.solvers.fluid_state import FluidState
-    from hofsi.solvers.solid import SolidState
+    from hofsi.solvers.solid_state import SolidState
     from hofsi.timestepping.control import ControlMemory
     from hofsi.timestepping.local_error import ErrorMemory
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.coupled_memory import CoupledMemory
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
@@ -19,13 +20,12 @@ from hofsi.errors import ConvergenceError, CouplingError
 from hofsi.motion import MeshMotion, MeshState
 from hofsi.records import CouplingRecord, State
 from hofsi.solvers.fluid import FluidSolver, FluidState, FluidStep
-from hofsi.solvers.fluid_memory import FluidMemory
-from hofsi.solvers.solid import SolidMemory, SolidSolver, SolidState, SolidStep
+from hofsi.solvers.solid import SolidSolver, SolidState, SolidStep
 from hofsi.timestepping.schemes import bdf_weights
 
 Array = NDArray[np.float64]
 
-__all__ = ["CoupledMarch", "CoupledMemory"]
+__all__ = ["CoupledMarch"]
 
 _HISTORY = 4  # interface displacements kept: a cubic predictor needs four
 _SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
@@ -42,30 +42,6 @@ class _Fields:
     mesh: MeshState
     solid: SolidStep
     displacement: Array
-
-
-@dataclass(frozen=True, eq=False)
-class CoupledMemory:
-    """What the solvers and their coupling know besides the state.
-
-    Attributes
-    ----------
-    fluid : FluidMemory
-    solid : SolidMemory
-    accelerator : object
-        What `hofsi.coupling.relaxation.Accelerator.memory` returned.
-    largest : (float, float)
-        Norms of the largest displacement and force of the run.
-    """
-
-    fluid: FluidMemory
-    solid: SolidMemory
-    accelerator: object
-    largest: tuple[float, float]
-
-    def without_factors(self) -> CoupledMemory:
-        """Return the same without what matrices were made from."""
-        return replace(self, fluid=self.fluid.without_factors(), solid=self.solid.without_factors())
 
 
 class CoupledMarch:

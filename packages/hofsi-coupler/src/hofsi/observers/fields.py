@@ -19,7 +19,7 @@ from hofsi.records import StepRecord
 
 if TYPE_CHECKING:
     from hofsi.solvers.fluid_vorticity import FluidVorticity
-    from hofsi.solvers.solid import SolidState
+    from hofsi.solvers.solid_state import SolidState
     from hofsi.solvers.solid_stress import SolidStress
 
 Array = NDArray[np.float64]

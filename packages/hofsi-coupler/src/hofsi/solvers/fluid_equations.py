@@ -209,7 +209,8 @@ class FluidEquations:
         matrices : callable
             Makes element matrices as they were.
         """
-        self._system = self._enclosed = None
+        self._system = self._enclosed = self._geometry = self._constant = self._stokes = None
+        self.factors.forget()
         if memory.enclosed is not None:
             self.boundary.constrain_anew(memory.enclosed)
             self.enclosed(memory.enclosed)

@@ -164,6 +164,11 @@ class FluidFactors:
         chord = self._chord is not None
         return FactorsMemory(self._origin, self._system.origin, chord, self._before, self._factor.fell_back)
 
+    def forget(self) -> None:
+        """Start without factors."""
+        self._factor = self._system = self._chord = None
+        self._origin, self._before = None, np.inf
+
     def recall(
         self, memory: FactorsMemory, system: CondensedSystem, problem: Problem, A: MatrixMaker, velocity: Array
     ) -> None:
