@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -146,6 +147,28 @@ def test_a_coupled_run_that_was_killed_goes_on_to_the_bit(
     changes = ["output.plots=false", "output.every=3", "output.checkpoint_every=2", "time.end=1.0"]
     interrupted_and_resumed(scene(flap), tmp_path, changes, 6, "SIGKILL")
     assert len(list((tmp_path / "parts" / "fields").iterdir())) == 8  # steps 3, 6, 9 and 10, fluid and solid
+
+
+@posix
+@pytest.mark.parametrize("count", [3, 5])
+def test_a_run_that_is_killed_at_any_moment_goes_on_to_the_bit(
+    flap: str, scene: Write, tmp_path: Path, vtk_module: object, count: int
+) -> None:
+    """Killed from outside, while it computes or writes."""
+    text, folder = scene(flap), tmp_path / "parts"
+    changes = ["output.plots=false", "output.every=1", "output.checkpoint_every=1", "time.end=0.8"]
+    command = [sys.executable, "-m", "hofsi", "run", text, "-o", str(folder), "--quiet", "--set", *changes]
+    process = subprocess.Popen(command, env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+    limit = time.monotonic() + 60.0
+    while process.poll() is None and time.monotonic() < limit:
+        if (folder / f"fields/fluid_{count:06d}.vtu").exists() and (folder / "restart.npz").exists():
+            process.kill()
+            break
+        time.sleep(0.001)
+    process.wait(60.0)
+    assert run(text, folder, changes, "--resume") == 0
+    assert run(text, tmp_path / "whole", changes) == 0
+    assert_same(tmp_path / "whole", folder)
 
 
 @posix
@@ -380,6 +403,17 @@ def test_what_cannot_change_is_refused(
     assert run(text, folder, [*changes, change], "--resume") == 2
     assert message in refusal(capsys)
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize("content", [b"", b"not a restart file", b"PK\x03\x04 but no more"])
+def test_a_file_that_is_damaged_is_refused(
+    flap: str, scene: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes
+) -> None:
+    path = tmp_path / "restart.npz"
+    path.write_bytes(content)
+    assert run(scene(flap), tmp_path / "out", TABLES_ONLY, "--resume", str(path)) == 2
+    assert f"{path}: is not a restart file of hofsi, or is damaged" in refusal(capsys)
+    assert not (tmp_path / "out").exists()
 
 
 def rewritten(path: Path, **changes: object) -> None:

@@ -51,7 +51,7 @@ CHANNELS: dict[str, Changes] = {
 }
 FLAPS: dict[str, Changes] = {
     "secants of earlier steps": (),
-    "Aitken's factor": (("[coupling]", '[coupling]\nacceleration = "aitken"'),),
+    "Aitken's factor": (("[coupling]", '[coupling]\nacceleration = "aitken"\nrelaxation = 0.9'),),
     "a constant factor": (("[coupling]", '[coupling]\nacceleration = "constant"\nrelaxation = 0.3'),),
     "a mesh in every iteration": (("[coupling]", '[coupling]\ngeometry = "implicit"'),),
     "a solid with generalised-alpha": (("end = 2.0", 'end = 2.0\nsolid = "generalised-alpha"'),),
