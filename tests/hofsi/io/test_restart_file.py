@@ -173,6 +173,24 @@ def test_without_what_factors_were_made_from_the_rounding_is_another(channel: st
     np.testing.assert_allclose(one.velocity, two.velocity, atol=1e-8)
 
 
+@pytest.mark.parametrize("solvers", [("direct", "amg"), ("amg", "direct")])
+def test_on_another_machine_another_solver_may_be_chosen(
+    channel: str, tmp_path: Path, solvers: tuple[str, str]
+) -> None:
+    """By linear.solver = "auto", which looks at the memory."""
+    pytest.importorskip("pyamg")
+    one, other = (
+        build(case_of(channel, (FINE, NEWTON, GROWING, ("[time]", f'[linear]\nsolver = "{name}"\n\n[time]'))))
+        for name in solvers
+    )
+    steps = steps_of(one, 4)
+    start = through_file(steps[1], one, other, tmp_path / "restart.npz")
+    last = steps_of(other, 2, start)[-1].state.fluid
+    assert last is not None
+    assert steps[-1].state.fluid is not None
+    np.testing.assert_allclose(last.velocity, steps[-1].state.fluid.velocity, atol=1e-8)
+
+
 @pytest.fixture
 def written(flap: str, tmp_path: Path) -> Path:
     """A restart file of the flap after two steps."""

@@ -34,7 +34,7 @@ __all__ = ["RESTART_FILE", "RestartFile", "read_restart", "write_restart"]
 RESTART_FILE = "restart.npz"
 """Its name in the directory of a run."""
 
-_FORMAT = 1
+_FORMAT = 1  # to be raised when what a run keeps between steps, or what an observer knows, has other fields
 _NAME = "hofsi restart"
 _BROKEN = (ValueError, KeyError, TypeError, IndexError, AttributeError, zipfile.BadZipFile, zlib.error, EOFError)
 
