@@ -174,9 +174,7 @@ def test_without_what_factors_were_made_from_the_rounding_is_another(channel: st
 
 
 @pytest.mark.parametrize("solvers", [("direct", "amg"), ("amg", "direct")])
-def test_on_another_machine_another_solver_may_be_chosen(
-    channel: str, tmp_path: Path, solvers: tuple[str, str]
-) -> None:
+def test_another_machine_may_choose_another_solver(channel: str, tmp_path: Path, solvers: tuple[str, str]) -> None:
     """By linear.solver = "auto", which looks at the memory."""
     pytest.importorskip("pyamg")
     one, other = (
