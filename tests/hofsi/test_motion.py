@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from hoblock.generate import generate
 from hoblock.layout import layout
 from hofsi.build import build
 from hofsi.errors import MeshMotionError
+from hofsi.motion import MeshPosition
 
 NEXT_TO_LAYERS = """
 [[mesh.count]]
@@ -47,3 +49,16 @@ def test_a_layer_that_does_not_fit_any_more_is_an_error_of_the_motion(motion):
     displacement = np.stack([0 * x[:, 0], 0.96 * x[:, 1]], axis=-1)
     with pytest.raises(MeshMotionError, match=r"edge b1–b2: boundary layer: the first height 0.05 does not fit"):
         motion.move(motion.reference, displacement, 0.3)
+
+
+def test_a_state_comes_back_from_its_numbers(motion):
+    x = motion.reference.mesh.points[motion.driven.nodes]
+    state = motion.move(motion.reference, np.stack([0.2 * x[:, 1] ** 2, 0.1 * x[:, 1]], axis=-1), 0.1)
+    again = motion.state_at(MeshPosition.of(state))
+    np.testing.assert_array_equal(again.mesh.points, state.mesh.points)
+    np.testing.assert_array_equal(generate(again.structure, 2).points, generate(state.structure, 2).points)
+    one, other = (MeshPosition.of(it).__dict__ for it in (state, again))
+    for name in ("min_det_J", "regenerated", "substeps", "amplification"):
+        assert one[name] == other[name]
+    back = [motion.move(it, np.zeros_like(x), 0.2).mesh.points for it in (state, again)]
+    np.testing.assert_array_equal(*back)

@@ -211,6 +211,12 @@ def test_times_of_fields(read_changed: Read, every: int, times: str) -> None:
     assert _built(plan(case), "fields").endswith(f" {times}")
 
 
+def test_restart_files_are_told(read_changed: Read) -> None:
+    assert "restart file" not in _names(plan(read_changed()).built)
+    case = read_changed(("[output]", "[output]\ncheckpoint_every = 5"))
+    assert _built(plan(case), "restart file") == "every 5 steps and at the end"
+
+
 @pytest.mark.parametrize(("solver", "name"), [("direct", "sparse LU"), ("amg", "algebraic multigrid to")])
 def test_linear_solver_of_solids(read_changed: Read, solid_alone: str, solver: str, name: str) -> None:
     planned = plan(read_changed(("[coupling]", f'[linear]\nsolver = "{solver}"'), text=solid_alone))

@@ -23,6 +23,7 @@ from hofsi.records import StepRecord
 from hofsi.run import run
 
 RUN = importlib.import_module("hofsi.run")  # the attribute of the package is the function
+REPORT = importlib.import_module("hofsi.report")
 TABLES_ONLY = OutputSettings(fields=False, plots=False, period_of="u_x")
 Reader = Callable[..., Case]
 # From t = 0.25 on a load tears the flap away.
@@ -145,8 +146,8 @@ def break_off(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
     """Let the simulation raise an exception after its second step."""
     simulate = RUN.simulate
 
-    def broken(problem: Problem) -> Iterator[StepRecord]:
-        for record in simulate(problem):
+    def broken(problem: Problem, after: StepRecord | None = None) -> Iterator[StepRecord]:
+        for record in simulate(problem, after):
             if record.step == 3:
                 raise error
             yield record
@@ -176,15 +177,15 @@ def test_an_unexpected_error_loses_nothing_and_is_not_hidden(
 def test_one_observer_that_cannot_close_does_not_keep_the_others_from_it(
     short: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    close = RUN.StepTable.close
+    close = REPORT.StepTable.close
     closed = []
 
     def fail(self: Any) -> None:
         close(self)
         raise OSError("disk full")
 
-    monkeypatch.setattr(RUN.StepTable, "close", fail)
-    monkeypatch.setattr(RUN.MeshQuality, "close", lambda self: closed.append(self))
+    monkeypatch.setattr(REPORT.StepTable, "close", fail)
+    monkeypatch.setattr(REPORT.MeshQuality, "close", lambda self: closed.append(self))
     with pytest.raises(OSError, match="disk full"):
         run(short, tmp_path)
     assert len(closed) == 1
@@ -194,13 +195,13 @@ def test_one_observer_that_cannot_close_does_not_keep_the_others_from_it(
 def test_while_it_runs_the_summary_says_so(short: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "summary.json").write_text('{"status": "completed"}', encoding="utf-8")
     seen = []
-    observe = RUN.StepTable.observe
+    observe = REPORT.StepTable.observe
 
     def watched(self: Any, record: StepRecord) -> None:
         seen.append(summary(tmp_path)["status"])
         observe(self, record)
 
-    monkeypatch.setattr(RUN.StepTable, "observe", watched)
+    monkeypatch.setattr(REPORT.StepTable, "observe", watched)
     run(short, tmp_path)
     assert seen == ["running"] * 3
     assert summary(tmp_path)["status"] == "completed"

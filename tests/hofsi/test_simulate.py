@@ -11,11 +11,13 @@ import pytest
 from hofsi.build import Problem, build
 from hofsi.case import Case, Unsteady
 from hofsi.clock import Clock
+from hofsi.counts import Counts
 from hofsi.errors import CouplingError
 from hofsi.io.scene import read_case
 from hofsi.quantities import evaluators
 from hofsi.records import CouplingRecord, State
 from hofsi.simulate import simulate
+from hofsi.solvers.solid_state import SolidMemory
 
 
 class Fragile:
@@ -36,6 +38,12 @@ class Fragile:
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         raise AssertionError("not a steady problem")
+
+    def memory(self) -> SolidMemory:
+        return SolidMemory(Counts())
+
+    def resume(self, state: State, memory: object) -> None:
+        self.calls = []
 
 
 def problem_of(march: Fragile, time: Unsteady, case: Case) -> Problem:

@@ -5,8 +5,10 @@ import scipy.linalg  # noqa: F401  (its BLAS is one of those to be held)
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from hofsi.case import Steady, Unsteady
+from hofsi.counts import Counts
 from hofsi.records import State
 from hofsi.simulate import simulate
+from hofsi.solvers.solid_state import SolidMemory
 from hofsi.threads import one_thread
 
 VARIABLES = (
@@ -65,6 +67,12 @@ class _Counting:
     def steady(self, state):
         return self.step(state, (), 0.0)
 
+    def memory(self):
+        return SolidMemory(Counts())
+
+    def resume(self, state, memory):
+        self.found.append(threads())
+
 
 @pytest.mark.usefixtures("two_threads")
 @pytest.mark.parametrize("time", [Steady(), Unsteady(0.1, 0.0, 0.2, 2)])
@@ -74,3 +82,15 @@ def test_steps_are_computed_with_one_thread_and_observed_with_all(time):
     observed = [threads() for _ in simulate(problem)]
     assert march.found == [{1}] * len(observed)
     assert observed == [{2}] * len(observed)
+
+
+@pytest.mark.usefixtures("two_threads")
+def test_what_is_made_again_to_go_on_is_made_with_one_thread_too():
+    march = _Counting()
+    problem = SimpleNamespace(
+        march=march, case=SimpleNamespace(time=Unsteady(0.1, 0.0, 0.2, 2)), fluid=None, solid=None
+    )
+    first = next(simulate(problem))
+    march.found.clear()
+    list(simulate(problem, first))
+    assert march.found == [{1}, {1}]

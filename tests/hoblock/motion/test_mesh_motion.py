@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -38,6 +40,16 @@ def test_the_mesh_is_that_of_the_moved_structure(plate, bend, name, order):
     bound = float(det_jacobian_bounds(again)[0].min())
     assert state.min_det_J == pytest.approx(bound, rel=1e-9)
     assert state.mesh.cells is motion.reference.mesh.cells
+
+
+def test_a_state_that_was_kept_without_its_structure_gets_it_again(plate, bend):
+    motion = MeshMotion(plate.structure, 3, plate.edges, MOVERS["barrier"](plate))
+    state = motion.move(motion.reference, bend(motion.reference.positions, 40.0))
+    bare = replace(state, structure_of=None)
+    with pytest.raises(ValueError, match="made without a block structure"):
+        _ = bare.structure
+    again = motion.with_structure(bare)
+    np.testing.assert_array_equal(generate(again.structure, 3).points, generate(state.structure, 3).points)
 
 
 @pytest.mark.parametrize("gradings", [False, True])

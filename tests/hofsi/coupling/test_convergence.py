@@ -56,3 +56,16 @@ def test_a_force_that_has_stopped_changing_has_converged():
     for off, force in ((1e-2, 5.0), (1e-4, 4.0)):
         test.residuals(np.array([2.0]), np.array([off]), np.array([force]))
     assert test.residuals(np.array([2.0]), np.array([1e-3]), np.array([4.0])).force == 0.0
+
+
+def test_the_largest_values_of_a_run_can_be_taken_back():
+    one, two = ConvergenceTest(1e-6), ConvergenceTest(1e-6)
+    one.begin_step(0.0, 0.0)
+    one.residuals(np.array([2.0]), np.array([0.0]), np.array([4.0]))
+    assert one.largest == (2.0, 4.0)
+    two.recall(one.largest)
+    for test in (one, two):
+        test.begin_step(np.array([2.0]), np.array([4.0]))
+        test.residuals(np.array([2.0]), np.array([1e-9]), np.array([4.0]))
+    values = np.array([2.0]), np.array([1e-9]), np.array([4.0 + 1e-9])
+    assert one.residuals(*values) == two.residuals(*values)

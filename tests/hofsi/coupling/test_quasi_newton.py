@@ -3,6 +3,7 @@
 import numpy as np
 
 from hofsi.coupling.quasi_newton import InverseLeastSquares
+from hofsi.coupling.relaxation import AitkenMemory
 
 
 def problem(size, seed):
@@ -96,3 +97,38 @@ def test_what_is_forgotten_does_not_help_later_steps():
     reused.forget()
     assert reused.columns == 0
     assert iterations(reused, A, 2.0 * b, 2.0 * exact) == iterations(fresh, A, 2.0 * b, 2.0 * exact)
+
+
+def test_with_the_columns_of_another_it_goes_on_as_that():
+    A, b, exact = problem(12, 12)
+    one, two = InverseLeastSquares(5, 1e-8, 0.5), InverseLeastSquares(5, 1e-8, 0.5)
+    iterations(one, A, b, exact)
+    memory = one.memory()
+    two.recall(memory)
+    one.begin_step()
+    two.begin_step()
+    d = np.linspace(0.0, 1.0, 12)
+    for _ in range(3):
+        r = A @ d + b - d
+        following = one.next(d, r)
+        np.testing.assert_array_equal(two.next(d, r), following)
+        d = following
+    one.end_step()
+    assert sum(map(len, memory.steps)) == sum(map(len, one.memory().steps)) - 2
+
+
+def test_the_memory_of_another_kind_of_accelerator_is_none():
+    A, b, exact = problem(12, 12)
+    accelerator = InverseLeastSquares(5, 1e-8, 0.5)
+    iterations(accelerator, A, b, exact)
+    accelerator.recall(AitkenMemory(0.2))
+    assert accelerator.columns == 0
+
+
+def test_columns_of_more_steps_than_are_reused_are_left_out():
+    A, b, exact = problem(6, 11)
+    one, two = InverseLeastSquares(3, 1e-8, 0.5), InverseLeastSquares(1, 1e-8, 0.5)
+    for factor in (1.0, 2.0):
+        iterations(one, A, factor * b, factor * exact)
+    two.recall(one.memory())
+    assert len(two.memory().steps) == 1

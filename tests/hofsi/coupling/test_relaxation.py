@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hofsi.coupling.relaxation import Aitken, ConstantRelaxation
+from hofsi.coupling.relaxation import Aitken, AitkenMemory, ConstantRelaxation
 
 
 def iterate(accelerator, image, d, count):
@@ -46,3 +46,23 @@ def test_aitken_that_forgets_begins_with_the_first_factor():
     aitken.forget()
     aitken.begin_step()
     np.testing.assert_allclose(aitken.next(np.array([0.0]), np.array([1.0])), 0.3)
+
+
+def test_aitken_goes_on_with_the_factor_of_another():
+    one, two = Aitken(0.3), Aitken(0.3)
+    iterate(one, lambda d: -3.0 * d + 2.0, np.array([0.0]), 4)
+    two.recall(one.memory())
+    d, r = np.array([1.0]), np.array([2.0])
+    one.begin_step()
+    two.begin_step()
+    np.testing.assert_array_equal(one.next(d, r), two.next(d, r))
+    assert two.next(d, r) != Aitken(0.3).next(d, r)
+    two.recall(None)
+    assert two.memory().factor == 0.3
+
+
+def test_constant_relaxation_remembers_nothing():
+    relaxation = ConstantRelaxation(0.25)
+    assert relaxation.memory() is None
+    relaxation.recall(AitkenMemory(0.7))
+    np.testing.assert_allclose(relaxation.next(np.zeros(1), np.ones(1)), 0.25)

@@ -53,8 +53,8 @@ def test_coupling() -> None:
 def test_solvers_and_output() -> None:
     assert read_nonlinear(Table({"tolerance": 1e-8, "max_iterations": 3})) == NonlinearSettings(1e-8, 3)
     assert read_linear(Table({"solver": "amg", "tolerance": 1e-7})) == LinearSettings("amg", 1e-7)
-    output = {"fields": False, "every": 3, "plots": False, "period_of": "u"}
-    assert read_output(Table(output), ["u"]) == OutputSettings(False, 3, False, "u")
+    output = {"fields": False, "every": 3, "plots": False, "period_of": "u", "checkpoint_every": 5}
+    assert read_output(Table(output), ["u"]) == OutputSettings(False, 3, False, "u", 5)
 
 
 @pytest.mark.parametrize(
@@ -138,6 +138,7 @@ def test_mistakes_of_the_solvers() -> None:
     ("data", "match"),
     [
         ({"every": 0}, r"output.every: got 0"),
+        ({"checkpoint_every": 0}, r"output.checkpoint_every: got 0"),
         ({"fields": "yes"}, r"output.fields: got the text 'yes'; expected true or false"),
         ({"period_of": "u_z"}, r"output.period_of: got the unknown name 'u_z'. Did you mean 'u_y'.*in \[quantities\]"),
         ({"plot": True}, r"output.plot: unknown key. Did you mean 'plots'"),

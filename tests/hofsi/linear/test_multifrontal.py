@@ -136,6 +136,18 @@ def test_poor_factors_give_way_to_safe_ones():
     assert solver.fell_back
 
 
+def test_factors_can_be_told_to_give_way():
+    cells, size, places, S = elements()
+    K = assembled(cells, size, S)
+    solver = multifrontal_solver(EliminationTree(cells, size, places), S, lambda: assembled(cells, size, S))
+    b = K @ np.random.default_rng(9).standard_normal(size)
+    solver.fall_back()
+    assert solver.fell_back
+    np.testing.assert_array_equal(solver.solve(b), CheckedSolver(PivotedFactor(K)).solve(b))
+    solver.fall_back()  # there is nothing left to fall back to
+    assert solver.fell_back
+
+
 def test_a_singular_matrix_is_reported():
     cells, size, places, S = elements(fixed=0.0)
     S = S - S.mean(axis=2, keepdims=True)  # constant vectors are in the kernel

@@ -97,3 +97,70 @@ def test_small_first_steps_grow_at_once_if_there_is_no_tolerance():
     time = Unsteady(1.0, 0.0, 3.0, 3, halvings=4, first=0.13)
     steps, _ = walk(StepControl(time))
     assert [size for _, size, _ in steps] == [0.125, 0.125, 0.25, 0.5, 1.0, 1.0]
+
+
+def half_way(time, steps, fails=lambda time, size: False):
+    """A control that has made some steps, with the end and size of the last one."""
+    control, end, size = StepControl(time), time.start, time.dt
+    for _ in range(steps):
+        while fails(control.time, control.size):
+            assert control.halve(failed=True)
+        end, size = control.time, control.size
+        control.advance(None)
+    return control, end, size
+
+
+@pytest.mark.parametrize("steps", range(1, 14))
+def test_a_control_that_is_resumed_goes_on_as_it_would_have(steps):
+    """Whatever it has divided: the second whole step fails until its parts are an eighth."""
+
+    def fails(time, size):
+        return 0.1 < time < 0.2 and size > 0.013
+
+    time = Unsteady(0.1, 0.0, 0.45, 5)
+    control, end, size = half_way(time, steps, fails)
+    resumed = StepControl.resumed(time, control.memory(), end, size)
+    assert walk(resumed, fails) == walk(control, fails)
+    assert resumed.total == 5
+
+
+def test_with_another_size_steps_are_counted_from_where_the_run_was():
+    control, end, size = half_way(Unsteady(0.1, 0.0, 1.0, 10), 3)
+    time = Unsteady(0.04, 0.0, 0.5, 13)
+    steps, _ = walk(StepControl.resumed(time, control.memory(), end, size))
+    assert [end for end, _, _ in steps] == pytest.approx([0.34, 0.38, 0.42, 0.46, 0.5])
+    assert [done for _, _, done in steps] == [4, 5, 6, 7, 8]
+
+
+def test_with_another_size_a_divided_step_counts_as_a_whole_one():
+    control, end, size = half_way(Unsteady(0.1, 0.0, 1.0, 10), 2, lambda time, size: time > 0.1 and size > 0.06)
+    assert end == pytest.approx(0.15)
+    steps, _ = walk(StepControl.resumed(Unsteady(0.05, 0.0, 0.25, 5), control.memory(), end, size))
+    assert [(end, done) for end, _, done in steps] == [(pytest.approx(0.2), 3.0), (pytest.approx(0.25), 4.0)]
+
+
+def test_a_run_that_was_resumed_with_another_size_can_be_resumed_again():
+    control, end, size = half_way(Unsteady(0.1, 0.0, 1.0, 10), 3)
+    time = Unsteady(0.04, 0.0, 0.5, 13)
+    second = StepControl.resumed(time, control.memory(), end, size)
+    end, size = second.time, second.size
+    second.advance(None)
+    third = StepControl.resumed(time, second.memory(), end, size)
+    assert third.total == second.total == 8
+    assert walk(third) == walk(second)
+
+
+def test_after_a_last_step_that_was_short_steps_are_counted_from_its_end():
+    control, end, size = half_way(Unsteady(0.1, 0.0, 0.25, 3), 3)
+    assert control.finished
+    steps, _ = walk(StepControl.resumed(Unsteady(0.1, 0.0, 0.4, 4), control.memory(), end, size))
+    assert [time for time, _, _ in steps] == pytest.approx([0.35, 0.4])
+    assert StepControl.resumed(Unsteady(0.1, 0.0, 0.25, 3), control.memory(), end, size).finished
+
+
+def test_with_a_tolerance_and_another_size_steps_begin_as_small_as_they_were():
+    time = Unsteady(0.1, 0.0, 1.0, 10, halvings=10, tolerance=1e-3, first=0.1 / 16)
+    control, end, size = half_way(time, 3)
+    assert size == 0.1 / 16
+    other = Unsteady(0.4, 0.0, 1.0, 3, halvings=10, tolerance=1e-3, first=0.4 / 16)
+    assert StepControl.resumed(other, control.memory(), end, size).size == 0.4 / 64

@@ -61,3 +61,14 @@ def test_the_worst_field_counts():
         errors.keep({"fluid": np.full((1, 2), value), "solid": np.full((1, 2), 1e-3 * value)})
     found = errors.estimate({"fluid": np.full((1, 2), 1.01), "solid": np.full((1, 2), 1.1e-3)}, [0.1] * 4)
     assert found == pytest.approx(2.0 / 11.0 * 0.1 / 1.1)
+
+
+def test_what_is_remembered_can_be_taken_back():
+    errors, others = (LocalErrors({"fluid": np.ones(1)}) for _ in range(2))
+    for value in (1.0, 3.0, 2.0):
+        errors.keep({"fluid": np.full((1, 2), value)})
+    memory = errors.memory()
+    errors.keep({"fluid": np.full((1, 2), 9.0)})  # which the memory does not notice
+    others.recall(memory)
+    found = others.estimate({"fluid": np.full((1, 2), 1.0)}, [0.1] * 4)
+    assert found == pytest.approx(2.0 / 11.0 * (1.0 - (3.0 * 2.0 - 3.0 * 3.0 + 1.0)) / 3.0)

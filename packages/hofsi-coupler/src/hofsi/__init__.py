@@ -31,11 +31,12 @@ if TYPE_CHECKING:
         LinearSolverError,
         MeshMotionError,
         NewtonError,
+        RestartError,
     )
     from hofsi.io.scene import load_case, read_case
     from hofsi.quantities import evaluators
     from hofsi.records import CouplingRecord, State, StepRecord
-    from hofsi.run import Result
+    from hofsi.report import Result
 
 _MODULES = {
     "Case": "hofsi.case",
@@ -47,8 +48,9 @@ _MODULES = {
     "LinearSolverError": "hofsi.errors",
     "MeshMotionError": "hofsi.errors",
     "NewtonError": "hofsi.errors",
+    "RestartError": "hofsi.errors",
     "Problem": "hofsi.build",
-    "Result": "hofsi.run",
+    "Result": "hofsi.report",
     "State": "hofsi.records",
     "StepRecord": "hofsi.records",
     "evaluators": "hofsi.quantities",
@@ -67,6 +69,7 @@ __all__ = [
     "MeshMotionError",
     "NewtonError",
     "Problem",
+    "RestartError",
     "Result",
     "State",
     "StepRecord",

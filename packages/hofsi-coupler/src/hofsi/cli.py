@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,13 +12,15 @@ from typing import Any
 from hoblock.errors import HoblockError, SceneError
 from hoblock.io.toml import repeat_option
 from hofsi.errors import HofsiError
+from hofsi.interruptions import Terminated
+from hofsi.io.restart_file import RESTART_FILE
 from hofsi.io.scene import load_case
 from hofsi.io.summary import read_summary
 from hofsi.version import __version__
 
 __all__ = ["main"]
 
-_BAD_INPUT, _NOT_CONVERGED, _INTERRUPTED = 2, 3, 130
+_BAD_INPUT, _NOT_CONVERGED, _INTERRUPTED, _TERMINATED = 2, 3, 130, 143
 _COLUMNS = ("quantity", "last", "mean ± amplitude", "frequency", "phase")
 
 
@@ -32,7 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0, or 2 for bad input, 3 for a run that did not converge, 130 for one that was interrupted.
+        0, or 2 for bad input, 3 for a run that did not converge, 130 for one that was interrupted, 143 for one that was
+        asked to end by SIGTERM.
     """
     options = _parser().parse_args(repeat_option(sys.argv[1:] if arguments is None else arguments))
     try:
@@ -44,9 +48,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         where = f"{error.filename}: " if error.filename else ""
         _complain(f"{where}{error.strerror or error}. Check the output directory and its permissions.")
         return _BAD_INPUT
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interruption:
         _complain(f"interrupted.{_kept(options, 'interrupted')}")
-        return _INTERRUPTED
+        return _TERMINATED if isinstance(interruption, Terminated) else _INTERRUPTED
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -70,6 +74,13 @@ def _parser() -> argparse.ArgumentParser:
             help="change a key of the scene, for example mesh.order=6; more may follow",
         )
     run.add_argument("-o", "--output", metavar="DIR", required=True, help="directory for the results")
+    run.add_argument(
+        "--resume",
+        metavar="FILE",
+        nargs="?",
+        const="",
+        help=f"go on from a restart file, by default {RESTART_FILE} in the directory for the results",
+    )
     run.add_argument("--quiet", action="store_true", help="show nothing but errors")
     return parser
 
@@ -97,7 +108,10 @@ def _run(options: argparse.Namespace) -> int:
     from hofsi.run import run
 
     case = load_case(options.scene, options.changes)
-    result = run(case, options.output, progress=None if options.quiet else sys.stderr, changes=options.changes)
+    progress, resume = None if options.quiet else sys.stderr, options.resume
+    if resume == "":
+        resume = Path(options.output) / RESTART_FILE
+    result = run(case, options.output, progress=progress, changes=options.changes, resume=resume)
     if result.status != "completed":
         _complain(f"{options.scene}: {result.reason}{_kept(options, result.status)}")
     if not options.quiet:
@@ -122,7 +136,19 @@ def _kept(options: argparse.Namespace, status: str) -> str:
         found = read_summary(Path(options.output) / "summary.json")["status"]
     except (OSError, ValueError, KeyError):
         return ""
-    return f" What was computed until then is in {options.output}." if found == status else ""
+    if found != status:
+        return ""
+    return f" What was computed until then is in {options.output}.{_way_on(options, status)}"
+
+
+def _way_on(options: argparse.Namespace, status: str) -> str:
+    """How to resume a run that left a restart file."""
+    if not (Path(options.output) / RESTART_FILE).is_file():
+        return ""
+    changes = ["--set", *options.changes] if options.changes else []
+    command = shlex.join(["hofsi", "run", options.scene, "-o", options.output, *changes, "--resume"])
+    smaller = ", with a smaller --set time.dt=… for example" if status == "failed" else ""
+    return f" Go on with: {command}{smaller}"
 
 
 def _report(summary: Mapping[str, Any], directory: Path) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 __all__ = ["Counts"]
 
@@ -51,6 +51,14 @@ class Counts:
     linear_iterations: int = 0
     preconditioners: int = 0
     reasons: dict[str, int] = field(default_factory=dict)
+
+    def copy(self) -> Counts:
+        """Return the counts as they stand now."""
+        return replace(self, reasons=dict(self.reasons))
+
+    def recall(self, counts: Counts) -> None:
+        """Take over other counts."""
+        vars(self).update(vars(counts.copy()))
 
     def factorised(self, reason: str) -> None:
         """Count a factorisation and why it was made."""

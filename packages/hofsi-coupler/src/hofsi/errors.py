@@ -18,6 +18,7 @@ __all__ = [
     "LinearSolverError",
     "MeshMotionError",
     "NewtonError",
+    "RestartError",
 ]
 
 
@@ -40,6 +41,12 @@ class CaseError(HofsiError, SceneError):
     Being a `hoblock.errors.SceneError`, it has the attributes ``problem``, ``place`` (for example
     ``"fluid.boundary[2].on"``) and ``file``, and is caught together with mistakes of the format.
     """
+
+    exit_code: ClassVar[int] = 2
+
+
+class RestartError(HofsiError):
+    """A restart file that cannot be read, or that the scene cannot go on from."""
 
     exit_code: ClassVar[int] = 2
 

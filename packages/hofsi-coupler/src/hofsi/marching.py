@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.clock import Clock
-from hofsi.records import CouplingRecord, State
+from hofsi.records import CouplingRecord, MarchMemory, State
 
 if TYPE_CHECKING:
     from hofsi.motion import MeshMotion, MeshState
     from hofsi.solvers.fluid import FluidSolver
+    from hofsi.solvers.fluid_memory import FluidMemory
     from hofsi.solvers.solid import SolidSolver
+    from hofsi.solvers.solid_state import SolidMemory
 
 Array = NDArray[np.float64]
 
@@ -34,6 +36,21 @@ class March(Protocol):
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         """Return the state at rest."""
+        ...
+
+    def memory(self) -> MarchMemory:
+        """What is kept between steps besides the state.
+
+        It is that of the last step that was accepted when it is asked for before the next one begins, and stays as it
+        is then.
+        """
+        ...
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the march was at a state; TypeError if the memory is not one of its own.
+
+        Arrays of the memory that are those of the state, or of the mesh, are the same objects.
+        """
         ...
 
 
@@ -97,6 +114,19 @@ class FluidMarch:
             step.solve(np.zeros((0, 2)))
             return State(fluid=step.accept(), mesh=state.mesh), None
 
+    def memory(self) -> FluidMemory:
+        """What the solver keeps."""
+        return self._solver.memory()
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the solver was at a state."""
+        from hofsi.solvers.fluid_memory import FluidMemory
+
+        assert state.fluid is not None
+        if not isinstance(memory, FluidMemory):
+            raise TypeError(f"memory: got {type(memory).__name__}; expected FluidMemory, of a fluid alone.")
+        self._solver.resume(memory, state.fluid)
+
 
 class SolidMarch:
     """A solid alone."""
@@ -121,3 +151,15 @@ class SolidMarch:
         with self._clock.phase("solid"):
             step = self._solver.begin_static(state.solid)
             return State(solid=step.accept(step.solve(None))), None
+
+    def memory(self) -> SolidMemory:
+        """What the solver keeps."""
+        return self._solver.memory()
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the solver was at a state."""
+        from hofsi.solvers.solid_state import SolidMemory
+
+        if not isinstance(memory, SolidMemory):
+            raise TypeError(f"memory: got {type(memory).__name__}; expected SolidMemory, of a solid alone.")
+        self._solver.resume(memory)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -15,7 +16,42 @@ from hofsi.errors import MeshMotionError
 
 Array = NDArray[np.float64]
 
-__all__ = ["MeshMotion", "MeshState"]
+__all__ = ["MeshMotion", "MeshPosition", "MeshState"]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPosition:
+    """The numbers of a `MeshState`: all but what the meshes of a motion share.
+
+    Attributes
+    ----------
+    points, vertices, positions : ndarray, shape (n, 2)
+        Nodes, block vertices and driven nodes.
+    min_det_J : float
+    regenerated, substeps : int
+    amplification : float
+    """
+
+    points: Array
+    vertices: Array
+    positions: Array
+    min_det_J: float
+    regenerated: int
+    substeps: int
+    amplification: float
+
+    @staticmethod
+    def of(state: MeshState) -> MeshPosition:
+        """Return the numbers of a state."""
+        return MeshPosition(
+            state.mesh.points,
+            state.vertices,
+            state.positions,
+            state.min_det_J,
+            state.regenerated,
+            state.substeps,
+            state.amplification,
+        )
 
 
 class MeshMotion:
@@ -68,6 +104,19 @@ class MeshMotion:
             "vertices": len(motion.moving_vertices),
             "nodes": len(motion.moving_nodes),
         }
+
+    def state_at(self, position: MeshPosition) -> MeshState:
+        """Return the state with given numbers; `MeshPosition.of` is the way back."""
+        state = MeshState(
+            self.reference.mesh.with_points(position.points),
+            position.vertices,
+            position.positions,
+            position.min_det_J,
+            position.regenerated,
+            position.substeps,
+            position.amplification,
+        )
+        return self._motion.with_structure(state)
 
     def move(self, current: MeshState, displacement: Array, time: float) -> MeshState:
         """Generate the mesh for a displacement of the driven nodes from the reference.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     import numpy as np
@@ -11,9 +11,11 @@ if TYPE_CHECKING:
 
     from hofsi.motion import MeshState
     from hofsi.solvers.fluid_state import FluidState
-    from hofsi.solvers.solid import SolidState
+    from hofsi.solvers.solid_state import SolidState
+    from hofsi.timestepping.control import ControlMemory
+    from hofsi.timestepping.local_error import ErrorMemory
 
-__all__ = ["CouplingRecord", "Rejection", "State", "StepRecord"]
+__all__ = ["CouplingRecord", "MarchMemory", "Rejection", "RunMemory", "State", "StepRecord"]
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,36 @@ class Rejection:
     reason: str
 
 
+class MarchMemory(Protocol):
+    """What solvers know besides the state: a frozen dataclass of arrays, numbers and others like it."""
+
+    def without_factors(self) -> MarchMemory:
+        """Return the same without what matrices were made from, for a case with other matrices."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class RunMemory:
+    """What a run knows after a step besides the state: the next step depends on it.
+
+    Attributes
+    ----------
+    sizes : tuple of float
+        Of the last steps, newest first.
+    control : ControlMemory
+        Which step comes next.
+    errors : ErrorMemory or None
+        What local errors are estimated from; None if they are not.
+    march : MarchMemory
+        What `hofsi.marching.March.memory` returned.
+    """
+
+    sizes: tuple[float, ...]
+    control: ControlMemory
+    errors: ErrorMemory | None
+    march: MarchMemory
+
+
 @dataclass(frozen=True)
 class StepRecord:
     """One finished step.
@@ -85,6 +117,8 @@ class StepRecord:
         Estimate for this step, see `hofsi.timestepping.local_error`; None if there is none.
     rejected : tuple of Rejection
         Larger steps that were tried before this one, in that order.
+    memory : RunMemory or None
+        What `hofsi.simulate.simulate` needs to go on after this step; None for a steady state.
     """
 
     step: int
@@ -96,3 +130,4 @@ class StepRecord:
     done: float = 0.0
     local_error: float | None = None
     rejected: tuple[Rejection, ...] = ()
+    memory: RunMemory | None = field(default=None, repr=False, compare=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from hofsi import case
 from hofsi.build import Problem
 from hofsi.errors import ConvergenceError
 from hofsi.fem.nodal_weights import nodal_weights
-from hofsi.records import CouplingRecord, Rejection, State, StepRecord
+from hofsi.records import CouplingRecord, Rejection, RunMemory, State, StepRecord
 from hofsi.threads import one_thread
 from hofsi.timestepping.control import StepControl
 from hofsi.timestepping.local_error import LocalErrors
@@ -23,7 +24,7 @@ Array = NDArray[np.float64]
 _STEPS = 4  # step sizes remembered, for multi-step schemes and predictors
 
 
-def simulate(problem: Problem) -> Iterator[StepRecord]:
+def simulate(problem: Problem, after: StepRecord | None = None) -> Iterator[StepRecord]:
     """Run a problem and yield every finished step; a steady problem yields one.
 
     A step that fails, or is not accurate enough if the case has a tolerance, is tried again with half its size. While a
@@ -33,6 +34,9 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
     ----------
     problem : Problem
         Made by `hofsi.build.build`.
+    after : StepRecord, optional
+        A step of the same problem, to go on after it to the bit as the run did that yielded it. The times and settings
+        of the problem's case may be others.
 
     Yields
     ------
@@ -43,6 +47,8 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
     ------
     ConvergenceError
         If a step does not succeed however small it is made.
+    ValueError
+        If ``after`` is a steady state.
     """
     times = problem.case.time
     alone = one_thread()
@@ -51,12 +57,14 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
             state, coupling = problem.march.steady(problem.march.initial(0.0))
         yield _record(1, 0.0, 0.0, state, coupling)
         return
-    state = problem.march.initial(times.start)
-    sizes: list[float] = []
-    control = StepControl(times)
     errors = None if times.tolerance is None else _local_errors(problem)
+    if after is None:
+        state, sizes, control, number = problem.march.initial(times.start), [], StepControl(times), 1
+    else:
+        with alone():
+            control = _resumed(problem, times, after, errors)
+        state, sizes, number = after.state, [] if after.memory is None else list(after.memory.sizes), after.step + 1
     rejected: list[Rejection] = []
-    number = 1
     while not control.finished:
         time, size = control.time, control.size
         steps = [size, *sizes][:_STEPS]
@@ -74,9 +82,22 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
             continue
         if errors is not None:
             errors.keep(_fields(new))
-        yield _record(number, time, size, new, coupling, control.done, error, tuple(rejected))
+        record = _record(number, time, size, new, coupling, control.done, error, tuple(rejected))
         control.advance(error)
         state, sizes, rejected, number = new, steps, [], number + 1
+        kept = None if errors is None else errors.memory()
+        yield replace(record, memory=RunMemory(tuple(sizes), control.memory(), kept, problem.march.memory()))
+
+
+def _resumed(problem: Problem, times: case.Unsteady, after: StepRecord, errors: LocalErrors | None) -> StepControl:
+    """Let the solvers become what they were after a step; return what says which step comes next."""
+    memory = after.memory
+    if memory is None:
+        raise ValueError(f"after: step {after.step} is a steady state; expected a time step.")
+    problem.march.resume(after.state, memory.march)
+    if errors is not None and memory.errors is not None:
+        errors.recall(memory.errors)
+    return StepControl.resumed(times, memory.control, after.time, after.dt)
 
 
 def _record(

@@ -181,7 +181,7 @@ class MeshMotion:
         vertices = mover.move(current.vertices, positions[driven.vertex_rows], tangents)
 
         def structure() -> BlockStructure:
-            return reference.structure.moved(vertices, self._explicit.curves(positions, vertices))
+            return self._structure(positions, vertices)
 
         if self._blending is not None:
             points = self._blended(self._blending, positions, vertices)
@@ -205,6 +205,13 @@ class MeshMotion:
             self._amplification(current, vertices, positions),
             structure,
         )
+
+    def _structure(self, positions: Array, vertices: Array) -> BlockStructure:
+        return self.reference.structure.moved(vertices, self._explicit.curves(positions, vertices))
+
+    def with_structure(self, state: MeshState) -> MeshState:
+        """Return a state of this motion, read from somewhere without its block structure, with it."""
+        return replace(state, structure_of=lambda: self._structure(state.positions, state.vertices))
 
     def _blended(self, blending: NodeBlending, positions: Array, vertices: Array) -> Array:
         """Points of all nodes by the sparse matrix."""

@@ -146,9 +146,13 @@ class OutputSettings:
         Steps between field files; the last step is always written.
     period_of : str or None
         The quantity whose period defines means, amplitudes and frequencies.
+    checkpoint_every : int or None
+        Steps between restart files, each of which takes the place of the last; None for one only if the run is broken
+        off.
     """
 
     fields: bool = True
     every: int = 10
     plots: bool = True
     period_of: str | None = None
+    checkpoint_every: int | None = None

@@ -52,6 +52,15 @@ class ConvergenceTest:
         self._last: tuple[Array, float] | None = None
         self._ratio = 0.0
 
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Norms of the largest displacement and force of the run so far."""
+        return self._largest_d, self._largest_f
+
+    def recall(self, largest: tuple[float, float]) -> None:
+        """Take back what ``largest`` was."""
+        self._largest_d, self._largest_f = largest
+
     def begin_step(self, displacement: Array | float, force: Array | float) -> None:
         """Set the values at the beginning of the step."""
         self._d_n, self._f_n, self._last, self._ratio = displacement, force, None, 0.0

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.coupled_memory import CoupledMemory
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
@@ -106,6 +107,20 @@ class CoupledMarch:
         d = solid.displacement[self._interface.solid]
         mesh = self._motion.move(self._motion.reference, self._driven(d, time), time)
         return State(self._fluid.initial_state(time, mesh.mesh.points), solid, mesh, (d,))
+
+    def memory(self) -> CoupledMemory:
+        """What is kept between steps besides the state."""
+        return CoupledMemory(self._fluid.memory(), self._solid.memory(), self._accelerator.memory(), self._test.largest)
+
+    def resume(self, state: State, memory: object) -> None:
+        """Become what the solvers and the coupling were at a state."""
+        fluid = _parts(state)[0]
+        if not isinstance(memory, CoupledMemory):
+            raise TypeError(f"memory: got {type(memory).__name__}; expected CoupledMemory, of a coupled problem.")
+        self._fluid.resume(memory.fluid, fluid)
+        self._solid.resume(memory.solid)
+        self._accelerator.recall(memory.accelerator)
+        self._test.recall(memory.largest)
 
     def _driven(self, d: Array, time: float) -> Array:
         displacement = self._prescribed(time)

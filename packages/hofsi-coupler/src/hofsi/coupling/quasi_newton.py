@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["InverseLeastSquares"]
+__all__ = ["InverseLeastSquares", "SecantMemory"]
 
 
 _OLDEST = 60  # ages beyond it count as this one: their columns have no weight any more
+
+
+@dataclass(frozen=True, eq=False)
+class SecantMemory:
+    """The secants of earlier steps.
+
+    Attributes
+    ----------
+    steps : tuple of tuple of (ndarray, ndarray), shape (k,)
+        Columns of V and W, newest step and newest column first.
+    dropped : int
+        Columns that were dropped so far.
+    """
+
+    steps: tuple[tuple[tuple[Array, Array], ...], ...]
+    dropped: int
 
 
 class InverseLeastSquares:
@@ -105,3 +123,14 @@ class InverseLeastSquares:
         """Keep the step's columns and forget the oldest step."""
         self._steps = [self._current, *self._steps][: self._reuse]
         self._current = []
+
+    def memory(self) -> SecantMemory:
+        """The columns of earlier steps."""
+        return SecantMemory(tuple(tuple(step) for step in self._steps), self.dropped)
+
+    def recall(self, memory: object) -> None:
+        """Go on with the columns of earlier steps."""
+        self.forget()
+        if isinstance(memory, SecantMemory):
+            self._steps = [list(step) for step in memory.steps][: self._reuse]
+            self.dropped = memory.dropped

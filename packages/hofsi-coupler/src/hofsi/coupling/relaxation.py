@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["Accelerator", "Aitken", "ConstantRelaxation"]
+__all__ = ["Accelerator", "Aitken", "AitkenMemory", "ConstantRelaxation"]
 
 
 class Accelerator(Protocol):
@@ -31,6 +32,14 @@ class Accelerator(Protocol):
         """Start anew: the step did not converge, and what was kept of earlier ones may be why."""
         ...
 
+    def memory(self) -> object:
+        """What is kept between steps: a frozen dataclass of arrays and numbers, or None."""
+        ...
+
+    def recall(self, memory: object) -> None:
+        """Take back what `memory` returned; start anew if it comes from another kind of accelerator."""
+        ...
+
 
 class ConstantRelaxation:
     """d + ω r with a constant ω."""
@@ -50,6 +59,19 @@ class ConstantRelaxation:
 
     def forget(self) -> None:
         """Nothing to forget."""
+
+    def memory(self) -> None:
+        """Nothing is kept."""
+
+    def recall(self, memory: object) -> None:
+        """Nothing to take back."""
+
+
+@dataclass(frozen=True)
+class AitkenMemory:
+    """The last factor."""
+
+    factor: float
 
 
 class Aitken:
@@ -85,3 +107,13 @@ class Aitken:
     def forget(self) -> None:
         """Start the next step from the given factor."""
         self._factor, self._last = self._first, None
+
+    def memory(self) -> AitkenMemory:
+        """The last factor."""
+        return AitkenMemory(self._factor)
+
+    def recall(self, memory: object) -> None:
+        """Go on from the last factor."""
+        self.forget()
+        if isinstance(memory, AitkenMemory):
+            self._factor = memory.factor

@@ -83,6 +83,8 @@ class CondensedSystem:
         The same, but the border's unknowns numbered in their order after all others.
     exact : bool
         Whether factors solve exactly, so that they can serve another matrix as preconditioner.
+    origin : object
+        What the pattern was made from, for its owner.
     """
 
     exact = True
@@ -100,6 +102,7 @@ class CondensedSystem:
     ) -> None:
         self.border = np.asarray(border, dtype=np.int64)
         self.dofs, self.boundary, self.size = dofs, boundary, size
+        self.origin: object = None
         self.copies = copies
         self._solver: Callable[[sp.csc_matrix], Solver] = DirectFactor
         self._places = places

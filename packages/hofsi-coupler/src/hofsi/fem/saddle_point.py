@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +13,7 @@ from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.constraints import NodeConstraints
-from hofsi.fem.element_matrices import ElementMatrices
+from hofsi.fem.element_matrices import ElementMatrices, origin_of
 from hofsi.fem.multigrid import GridCycle, GridLevel, grid_levels
 from hofsi.fem.spaces import TaylorHood
 from hofsi.linear.krylov import flexible_gmres
@@ -20,10 +21,26 @@ from hofsi.linear.solver import Solver
 
 Array = NDArray[np.float64]
 
-__all__ = ["SaddlePointSystem"]
+__all__ = ["CycleMemory", "SaddlePointSystem"]
 
 _SETUP = 10
 """Iterations that cost about as much as a new preconditioner."""
+
+
+@dataclass(frozen=True, eq=False)
+class CycleMemory:
+    """What a preconditioner was made from, and how it has served.
+
+    Attributes
+    ----------
+    origin : object
+        Of its matrix, see `hofsi.fem.element_matrices.origin_of`.
+    taken : tuple of int
+        Iterations of the solutions with it.
+    """
+
+    origin: object
+    taken: tuple[int, ...]
 
 
 class SaddlePointSystem(CondensedSystem):
@@ -67,6 +84,7 @@ class SaddlePointSystem(CondensedSystem):
         self.counts = Counts() if counts is None else counts
         self._parts = space, constraints, pinned, places, lengths
         self._cycle: Solver | None = None
+        self._cycle_of: object = None
         self._taken: list[int] = []  # iterations of the solutions with it
 
     @cached_property
@@ -102,9 +120,20 @@ class SaddlePointSystem(CondensedSystem):
             return self._cycle, False
         self._cycle = None
         self._cycle = GridCycle(self.levels, A, S)
-        self._taken = []
+        self._cycle_of, self._taken = origin_of(A), []
         self.counts.preconditioners += 1
         return self._cycle, True
+
+    def memory(self) -> CycleMemory | None:
+        """What the preconditioner at hand can be made again from; None if there is none."""
+        if self._cycle is None or self._cycle_of is None:
+            return None
+        return CycleMemory(self._cycle_of, tuple(self._taken))
+
+    def recall(self, memory: CycleMemory, A: ElementMatrices) -> None:
+        """Make the preconditioner of a memory again, from its matrices."""
+        self.preconditioner(A, self.condensed(A).S, renew=True)
+        self._taken = list(memory.taken)
 
     @property
     def patience(self) -> int:

@@ -166,6 +166,7 @@ def read_output(table: Table, quantities: Iterable[str]) -> OutputSettings:
         every=table.integer("every", default.every, minimum=1),
         plots=table.boolean("plots", default.plots),
         period_of=period_of,
+        checkpoint_every=table.integer("checkpoint_every", default.checkpoint_every, minimum=1),
     )
     table.finish()
     return settings

@@ -7,15 +7,20 @@ import math
 import os
 import platform
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import hoblock
 from hofsi.version import __version__
 
-__all__ = ["machine", "read_summary", "versions", "write_summary"]
+if TYPE_CHECKING:
+    from hofsi.build import Problem
+    from hofsi.clock import Clock
+
+__all__ = ["count_summary", "machine", "phase_seconds", "read_summary", "versions", "write_summary"]
 
 
 def write_summary(path: str | os.PathLike[str], summary: Mapping[str, Any]) -> None:
@@ -62,6 +67,42 @@ def versions() -> dict[str, str]:
         "hoblock": hoblock.__version__,
         "hofsi": __version__,
     }
+
+
+def phase_seconds(clock: Clock, total: float) -> dict[str, float]:
+    """Seconds in all, by phase, and what is left."""
+    phases = dict(clock.seconds)
+    phases["other"] = max(0.0, total - sum(phases.values()))
+    return {name: round(seconds, 4) for name, seconds in {"total": total, **phases}.items()}
+
+
+def count_summary(problem: Problem, sums: Mapping[str, int]) -> dict[str, Any]:
+    """What the solvers of a problem did, in all and by field, and how large the fields are.
+
+    Parameters
+    ----------
+    problem : Problem
+    sums : mapping of str to int
+        What was summed over the steps.
+    """
+    counts: dict[str, Any] = {
+        "steps": sums["steps"],
+        "coupling_iterations": sums["coupling_iterations"],
+        "assemblies": sum(count.assemblies for count in problem.counts.values()),
+        "factorisations": sum(count.factorisations for count in problem.counts.values()),
+        "blocks_regenerated": sums["blocks_regenerated"],
+        "mesh_jumps": sums["mesh_jumps"],
+    }
+    if problem.fluid is not None:
+        fluid = problem.fluid
+        size = {"elements": len(fluid.mesh.cells), "unknowns": fluid.solver.space.size}
+        moving = {} if fluid.motion is None else {f"moving_{name}": n for name, n in fluid.motion.moving.items()}
+        counts["fluid"] = {**size, **moving, **asdict(fluid.solver.counts)}
+    if problem.solid is not None:
+        solid = problem.solid
+        size = {"elements": len(solid.mesh.cells), "unknowns": 2 * len(solid.mesh.points)}
+        counts["solid"] = {**size, **asdict(solid.solver.counts)}
+    return counts
 
 
 def machine() -> dict[str, str | int | None]:

@@ -88,7 +88,7 @@ class CheckedSolver:
             raise LinearSolverError("the right-hand side is not finite.", "diverged")
         x, residual = self._refined(b, size)
         if not self._acceptable(x, residual, size) and self._fallback is not None:
-            self._factor, self._fallback, self.fell_back = self._fallback(), None, True
+            self.fall_back()
             x, residual = self._refined(b, size)
         if not self._acceptable(x, residual, size):
             raise LinearSolverError(
@@ -97,6 +97,11 @@ class CheckedSolver:
                 "missing."
             )
         return x
+
+    def fall_back(self) -> None:
+        """Take the fallback's factors from now on, unless it has happened or there are none."""
+        if self._fallback is not None:
+            self._factor, self._fallback, self.fell_back = self._fallback(), None, True
 
     def substitute(self, b: Array) -> Array:
         """Solve once, as well as the factors can, without a look at the residual: for preconditioning."""

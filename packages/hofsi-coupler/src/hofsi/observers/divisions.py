@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from hofsi.case import Unsteady
 from hofsi.records import StepRecord
@@ -53,6 +54,22 @@ class DivisionWatch:
 
     def close(self) -> None:
         """Nothing to do."""
+
+    def memory(self) -> dict[str, Any]:
+        """What was counted."""
+        return {
+            "kinds": dict(self._kinds),
+            "smallest": self._smallest,
+            "largest": self._largest,
+            "failures": self._failures,
+            "inaccurate": self._inaccurate,
+        }
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on counting."""
+        self._kinds = Counter(memory["kinds"])
+        self._smallest, self._largest = memory["smallest"], memory["largest"]
+        self._failures, self._inaccurate = memory["failures"], memory["inaccurate"]
 
     def summary(self) -> dict[str, object]:
         """Smallest and largest step, rejected attempts by kind, and steps that were too inaccurate all the same."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +19,14 @@ from hofsi.records import StepRecord
 
 if TYPE_CHECKING:
     from hofsi.solvers.fluid_vorticity import FluidVorticity
-    from hofsi.solvers.solid import SolidState
+    from hofsi.solvers.solid_state import SolidState
     from hofsi.solvers.solid_stress import SolidStress
 
 Array = NDArray[np.float64]
 
 __all__ = ["FieldWriter"]
+
+_SERIES = ("fluid", "solid")
 
 
 class FieldWriter:
@@ -75,6 +77,28 @@ class FieldWriter:
             self._write(self._waiting)
             self._waiting = None
 
+    def memory(self) -> dict[str, Any]:
+        """The series so far, and whether the last step is still to be written if no other follows."""
+        return {"entries": self._entries, "waiting": self._waiting is not None}
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on with the series as it was: what was written later, or not to the end, is removed.
+
+        Files that are not there, because the run goes on in another directory, are left out.
+        """
+        for path in (self._directory / "fields").glob("*.vtu*"):
+            series, _, number = path.name.partition("_")
+            if number and series in _SERIES and not _listed(memory["entries"].get(series, ()), path):
+                path.unlink()
+        for name in _SERIES:
+            here = [entry for entry in memory["entries"].get(name, ()) if (self._directory / entry[1]).is_file()]
+            if here:
+                self._entries[name] = here
+                write_pvd(self._directory / f"{name}.pvd", here)
+            else:
+                (self._directory / f"{name}.pvd").unlink(missing_ok=True)
+        self._waiting = record if memory["waiting"] else None
+
     def _write(self, record: StepRecord) -> None:
         fluid, solid, state = self._problem.fluid, self._problem.solid, record.state
         if fluid is not None and state.fluid is not None and state.mesh is not None:
@@ -110,6 +134,10 @@ class FieldWriter:
         entries = self._entries.setdefault(name, [])
         entries.append((record.time, file))
         write_pvd(self._directory / f"{name}.pvd", entries)
+
+
+def _listed(entries: Iterable[tuple[float, str]], path: Path) -> bool:
+    return any(file == f"fields/{path.name}" for _, file in entries)
 
 
 def _vorticity(problem: Problem) -> FluidVorticity | None:

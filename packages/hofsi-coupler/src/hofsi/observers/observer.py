@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 from hofsi.records import StepRecord
 
@@ -18,4 +19,12 @@ class Observer(Protocol):
 
     def close(self) -> None:
         """Finish: after the last step, also of a run that failed."""
+        ...
+
+    def memory(self) -> Mapping[str, Any]:
+        """What it knows after a step: plain values and arrays. All it has written is on the disk by then."""
+        ...
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Take back what it knew after a step, in a run that goes on after it."""
         ...

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +31,7 @@ class MeshQuality:
         self._solid, self._every = solid, every
         self._waiting: StepRecord | None = None
         self._points: Array | None = None
+        self._last: Array | None = None  # points of the last step's mesh
         self._samples = 0
         self._worst: dict[str, tuple[float, float]] = {}
         self._means: list[float] = []
@@ -37,6 +41,7 @@ class MeshQuality:
         if record.min_det_J is not None:
             self._note("min_det_J", record.min_det_J, record.time, 1.0)
         self._waiting = record
+        self._last = None if record.state.mesh is None else record.state.mesh.mesh.points
         if (record.step - 1) % self._every == 0:
             self._evaluate(record)
 
@@ -44,6 +49,23 @@ class MeshQuality:
         """Evaluate the last step."""
         if self._waiting is not None:
             self._evaluate(self._waiting)
+
+    def memory(self) -> dict[str, Any]:
+        """What was found so far, and whether the last step and its mesh are evaluated."""
+        return {
+            "waiting": self._waiting is not None,
+            "samples": self._samples,
+            "worst": self._worst,
+            "means": np.array(self._means),
+            "evaluated": self._points is not None and self._points is self._last,
+        }
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on from what was found."""
+        self._waiting = record if memory["waiting"] else None
+        self._last = None if record.state.mesh is None else record.state.mesh.mesh.points
+        self._points = self._last if memory["evaluated"] else None
+        self._samples, self._worst, self._means = memory["samples"], dict(memory["worst"]), memory["means"].tolist()
 
     def summary(self) -> dict[str, float | int | str]:
         """Worst values and the times when they occurred; empty before the first step.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -50,6 +51,20 @@ class FlowResolutionWatch:
         """Evaluate the last step."""
         if self._waiting is not None:
             self._evaluate(self._waiting)
+
+    def memory(self) -> dict[str, Any]:
+        """What was found so far, and whether the last step is still to be evaluated."""
+        return {
+            "waiting": self._waiting is not None,
+            "worst": self._worst,
+            "largest": self._largest,
+            "warned": self._warned,
+        }
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on from what was found."""
+        self._waiting = record if memory["waiting"] else None
+        self._worst, self._largest, self._warned = dict(memory["worst"]), memory["largest"], memory["warned"]
 
     def summary(self) -> dict[str, float | int]:
         """The largest Péclet number, and the element with the roughest flow where convection dominates, if any."""

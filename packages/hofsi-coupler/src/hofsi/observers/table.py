@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.counts import Counts
+from hofsi.errors import RestartError
 from hofsi.records import StepRecord
 
 Array = NDArray[np.float64]
 
-__all__ = ["QuantityTable", "STEP_COLUMNS", "StepTable"]
+__all__ = ["QuantityTable", "STEP_COLUMNS", "StepTable", "check_table", "quantity_columns"]
 
 STEP_COLUMNS = (
     "step",
@@ -48,10 +51,21 @@ _COUNTED = ("assemblies", "preconditioners", "linear_iterations")
 class _Lines:
     """A CSV file whose lines are on disk as soon as they are written."""
 
-    def __init__(self, path: str | os.PathLike[str], columns: Sequence[str]) -> None:
-        self._file = open(path, "w", encoding="utf-8", newline="")  # noqa: SIM115 (open as long as the run)
+    def __init__(self, path: str | os.PathLike[str], columns: Sequence[str], kept: int | None = None) -> None:
+        path = Path(path)
+        if kept is not None:
+            os.truncate(path, kept)
+        self._file = path.open("w" if kept is None else "a", encoding="utf-8", newline="")
         self._writer = csv.writer(self._file, lineterminator="\n")
-        self.write(columns)
+        if kept is None:
+            self.write(columns)
+
+    @property
+    def size(self) -> int:
+        """Bytes so far, which are on the disk then."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+        return os.fstat(self._file.fileno()).st_size
 
     def write(self, cells: Sequence[object]) -> None:
         """Write a line; None is an empty cell, and numbers keep all their digits."""
@@ -62,9 +76,37 @@ class _Lines:
         self._file.close()
 
 
+def check_table(path: Path, columns: Sequence[str], kept: int) -> None:
+    """Check that a table can be cut off after some bytes and continued.
+
+    Raises
+    ------
+    RestartError
+        If it has not so many, or other columns.
+    """
+    size = path.stat().st_size if path.is_file() else 0
+    if size < kept:
+        raise RestartError(
+            f"{path}: has {size} bytes; expected at least the {kept} that it had when the restart file was written. Go "
+            "on in the directory of that run, or in a new one, or run from the start, without --resume."
+        )
+    with path.open("rb") as file:
+        head = file.readline().decode("utf-8", "replace").rstrip()
+    if head != ",".join(columns):
+        raise RestartError(
+            f"{path}: has the columns {head!r}; expected {','.join(columns)!r}. Go on in the directory of the run, or "
+            "run from the start, without --resume."
+        )
+
+
 def _rounded(time: float) -> float:
     """A time without the rounding error of its last digits: 0.3 and not 0.30000000000000004."""
     return float(f"{time:.12g}")
+
+
+def quantity_columns(names: Iterable[str]) -> tuple[str, ...]:
+    """Columns of ``quantities.csv``."""
+    return ("step", "t", *names)
 
 
 class QuantityTable:
@@ -76,13 +118,20 @@ class QuantityTable:
         Of a CSV file with the columns step, t and the names; it is flushed in every step.
     evaluators : mapping of str to callable
         See `hofsi.quantities.evaluators`.
+    kept : int, optional
+        Bytes of the file that are kept, in a run that goes on, see `check_table`; by default it is written anew.
     """
 
-    def __init__(self, path: str | os.PathLike[str], evaluators: Mapping[str, Callable[[StepRecord], float]]) -> None:
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        evaluators: Mapping[str, Callable[[StepRecord], float]],
+        kept: int | None = None,
+    ) -> None:
         self._evaluators = dict(evaluators)
         self._times: list[float] = []
         self._values: dict[str, list[float]] = {name: [] for name in evaluators}
-        self._lines = _Lines(path, ("step", "t", *evaluators))
+        self._lines = _Lines(path, quantity_columns(evaluators), kept)
 
     @property
     def times(self) -> Array:
@@ -102,6 +151,15 @@ class QuantityTable:
             self._values[name].append(value)
         self._lines.write((record.step, _rounded(record.time), *row.values()))
 
+    def memory(self) -> dict[str, Any]:
+        """The series so far, and the size of the file."""
+        return {"times": self.times, "series": self.series, "size": self._lines.size}
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on with the series."""
+        self._times = memory["times"].tolist()
+        self._values = {name: values.tolist() for name, values in memory["series"].items()}
+
     def close(self) -> None:
         """Close the file."""
         self._lines.close()
@@ -118,6 +176,8 @@ class StepTable:
         the step's own.
     clock : callable
         Seconds; those since the table was opened are written.
+    kept : int, optional
+        As of `QuantityTable`.
 
     Attributes
     ----------
@@ -130,13 +190,17 @@ class StepTable:
     """
 
     def __init__(
-        self, path: str | os.PathLike[str], counts: Mapping[str, Counts], clock: Callable[[], float] = perf_counter
+        self,
+        path: str | os.PathLike[str],
+        counts: Mapping[str, Counts],
+        clock: Callable[[], float] = perf_counter,
+        kept: int | None = None,
     ) -> None:
         self._counts, self._clock = counts, clock
         self._opened = clock()
         self._mesh: object = None
         self._reasons: dict[str, int] = {}
-        self._lines = _Lines(path, STEP_COLUMNS)
+        self._lines = _Lines(path, STEP_COLUMNS, kept)
         self.steps = self.coupling_iterations = self.blocks_regenerated = self.mesh_jumps = 0
 
     def observe(self, record: StepRecord) -> None:
@@ -172,6 +236,32 @@ class StepTable:
                 round(self._clock() - self._opened, 4),
             )
         )
+
+    @property
+    def sums(self) -> dict[str, int]:
+        """What was added up, by name."""
+        return {
+            "steps": self.steps,
+            "coupling_iterations": self.coupling_iterations,
+            "blocks_regenerated": self.blocks_regenerated,
+            "mesh_jumps": int(self.mesh_jumps),
+        }
+
+    def memory(self) -> dict[str, Any]:
+        """What was added up, the reasons told so far, the seconds, and the size of the file."""
+        return {
+            **self.sums,
+            "reasons": self._reasons,
+            "seconds": self._clock() - self._opened,
+            "size": self._lines.size,
+        }
+
+    def recall(self, memory: Mapping[str, Any], record: StepRecord) -> None:
+        """Go on with the sums."""
+        self.steps, self.coupling_iterations = memory["steps"], memory["coupling_iterations"]
+        self.blocks_regenerated, self.mesh_jumps = memory["blocks_regenerated"], memory["mesh_jumps"]
+        self._reasons, self._mesh = dict(memory["reasons"]), record.state.mesh
+        self._opened = self._clock() - memory["seconds"]
 
     def _because(self) -> str | None:
         """Reasons for the factorisations of this step, with their numbers."""

@@ -54,5 +54,7 @@ def output_items(case: Case) -> Iterator[Item]:
         else:
             times = counted(-(-case.time.steps // output.every), "time")
             yield Item("fields", f"{files} every {counted(output.every, 'step')} and at the end: {times}")
+    if output.checkpoint_every is not None and isinstance(case.time, Unsteady):
+        yield Item("restart file", f"every {counted(output.checkpoint_every, 'step')} and at the end")
     if output.plots:
         yield Item("plots", "PNG of mesh" + (", fields and quantities" if has_series(case) else " and fields"))

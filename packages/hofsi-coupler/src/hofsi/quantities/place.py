@@ -62,17 +62,19 @@ def tracked(fluid: FluidPart, at: case.Point, place: str) -> Whereabouts:
 
 
 class _Tracker:
-    """Finds a place again after the mesh has moved, beginning where it was found last."""
+    """Finds a place again after the mesh has moved, beginning where it was in the reference.
+
+    So what it finds depends on the mesh alone, to the bit, and not on the meshes before.
+    """
 
     def __init__(self, mesh: QuadMesh, at: case.Point, start: Location) -> None:
         self._target = (at.x, at.y)
         self._points = mesh.points
         self._found: Location | None = start
-        self._last = start
+        self._start = start
 
     def find(self, mesh: QuadMesh) -> Location | None:
         if mesh.points is not self._points:
             self._points = mesh.points
-            self._found = find(mesh, self._target, self._last)
-            self._last = self._found or self._last
+            self._found = find(mesh, self._target, self._start)
         return self._found

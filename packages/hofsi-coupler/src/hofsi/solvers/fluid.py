@@ -8,7 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.case import Convection
+from hofsi.fem.element_matrices import TracedMatrices
 from hofsi.solvers.fluid_equations import FluidEquations
+from hofsi.solvers.fluid_matrices import MatrixOrigin
+from hofsi.solvers.fluid_memory import FluidMemory
+from hofsi.solvers.fluid_operator import FluidOperator
 from hofsi.solvers.fluid_state import FluidState
 from hofsi.solvers.fluid_step import FluidStep
 from hofsi.timestepping.schemes import bdf_weights, extrapolation_weights
@@ -35,6 +39,27 @@ class FluidSolver(FluidEquations):
             for a, expression in enumerate(self.fluid.initial_velocity):
                 velocity[:, a] = expression.evaluate(x=points[:, 0], y=points[:, 1])
         return velocity
+
+    def resume(self, memory: FluidMemory, state: FluidState) -> None:
+        """Become what the solver was when it came to a state and `memory` was asked for.
+
+        Parameters
+        ----------
+        memory : FluidMemory
+            Its arrays that are the same as those of the state are the same objects.
+        state : FluidState
+        """
+
+        def matrices(origin: MatrixOrigin) -> TracedMatrices:
+            if origin.velocity is None or origin.mesh_velocity is None:
+                return TracedMatrices(self.constant_terms(origin.points, origin.rate).ask().matrices, origin)
+            nothing = np.zeros(origin.points.shape)
+            operator = FluidOperator(
+                self, origin.points, origin.mesh_velocity, origin.rate, nothing, state.time, share=origin.share
+            )
+            return operator.matrices(origin.velocity, newton=origin.newton)
+
+        self.recall(memory, matrices)
 
     def begin_step(
         self,

@@ -120,6 +120,11 @@ class FluidBoundary:
     viscosity : float
     driven : ndarray or None
         Nodes that move as something outside the mesh wants them to; None if all do.
+
+    Attributes
+    ----------
+    constrained_at : ndarray, shape (n, 2), or None
+        Node positions at which the constraints at hand were made.
     """
 
     def __init__(
@@ -151,6 +156,7 @@ class FluidBoundary:
         self._constraints: NodeConstraints | None = None
         self._slipping: list[DirectedNodes] = []
         self._constraints_at: Array | None = None
+        self.constrained_at: Array | None = None
 
     def stick(self, advective: Array, points: Array, mesh_velocity: Array) -> None:
         """Write what is known of the velocity relative to the mesh, at walls and interface, into a field (n, 2)."""
@@ -165,8 +171,14 @@ class FluidBoundary:
             if self._constraints is None or not _same_directions(slipping, self._slipping):
                 self._constraints = NodeConstraints(len(points), [*self._fixed_entries(), *slipping])
                 self._slipping = slipping
+                self.constrained_at = points
         self._constraints_at = points
         return self._constraints
+
+    def constrain_anew(self, points: Array) -> NodeConstraints:
+        """Make the constraints at given node positions, however near they are to those at hand."""
+        self._constraints = None
+        return self.constraints(points)
 
     def _fixed_entries(self) -> list[DirectedNodes]:
         own = self._space.standing_for

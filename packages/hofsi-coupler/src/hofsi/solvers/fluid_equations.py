@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,19 +12,24 @@ from hoblock.reference import differentiation_matrix, gauss_legendre, gauss_loba
 from hofsi import case
 from hofsi.counts import Counts
 from hofsi.fem.assembly import assemble_vector
+from hofsi.fem.condensation import CondensedFactor, CondensedSystem
 from hofsi.fem.element import boundary_first
+from hofsi.fem.element_matrices import TracedMatrices
 from hofsi.fem.geometry import Geometry, element_geometry
 from hofsi.fem.periodic import pair_sides
+from hofsi.fem.saddle_point import SaddlePointSystem
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.kernels import tensor_products
+from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.solver import Solver
 from hofsi.solvers.backflow import Backflow
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
-from hofsi.solvers.fluid_factors import FluidFactors
-from hofsi.solvers.fluid_matrices import ConstantTerms
-from hofsi.solvers.fluid_system import FluidSystem, factorised, fluid_system
+from hofsi.solvers.fluid_factors import FactorsMemory, FluidFactors, Problem
+from hofsi.solvers.fluid_matrices import ConstantTerms, MatrixOrigin
+from hofsi.solvers.fluid_memory import FluidMemory
+from hofsi.solvers.fluid_system import FluidSystem, SystemOrigin, factorised, fluid_system
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -73,8 +80,9 @@ class FluidEquations:
         self._geometry: tuple[Array, Geometry] | None = None
         self._constant: tuple[Array, float, ConstantTerms] | None = None
         self._row_sums: tuple[ConstantTerms, float, float] | None = None
-        self._enclosed: EnclosedRegions | None = None
+        self._enclosed: tuple[Array, EnclosedRegions] | None = None
         self._stokes: tuple[ConstantTerms, FluidSystem, Solver] | None = None
+        self._stokes_respond = False
         self._alike: Array = mesh.points
 
     @property
@@ -136,6 +144,8 @@ class FluidEquations:
                 self.space, constraints, pinned, self.linear, points, self.counts, self.boundary.interface
             )
             self._system_for = constraints
+            assert self.boundary.constrained_at is not None
+            self._system.origin = SystemOrigin(self.boundary.constrained_at, points)
         return self._system
 
     def check_periodic(self, points: Array, time: float) -> None:
@@ -154,8 +164,9 @@ class FluidEquations:
     def enclosed(self, points: Array) -> EnclosedRegions:
         """Regions whose pressure has no level; found once, for motion does not open a region."""
         if self._enclosed is None:
-            self._enclosed = EnclosedRegions(self.space, self.boundary.constraints(points), self.pressure_work(points))
-        return self._enclosed
+            regions = EnclosedRegions(self.space, self.boundary.constraints(points), self.pressure_work(points))
+            self._enclosed = points, regions
+        return self._enclosed[1]
 
     def pressure_work(self, points: Array) -> Array:
         """What a unit pressure does to the velocity, ∫ ∂N/∂x over each element, shape (e, n, 2)."""
@@ -170,9 +181,104 @@ class FluidEquations:
         """
         terms, system = self.constant_terms(points, rate), self.system(points)
         if self._stokes is None or self._stokes[0] is not terms or self._stokes[1] is not system:
-            self._stokes = (terms, system, factorised(system, terms.ask().matrices, responding=responding))
+            origin = MatrixOrigin(points, None, rate, 1.0, None, False)
+            matrices = TracedMatrices(terms.ask().matrices, origin)
+            self._stokes = (terms, system, factorised(system, matrices, responding=responding))
+            self._stokes_respond = responding
             self.counts.factorised("mesh or step size")
         return self._stokes[2]
+
+    def memory(self) -> FluidMemory:
+        """What is kept between steps, so that `recall` can make it again."""
+        system, constant = self._system, self._constant
+        current = self._stokes is not None and constant is not None and self._stokes[0] is constant[2]
+        return FluidMemory(
+            counts=self.counts.copy(),
+            enclosed=None if self._enclosed is None else self._enclosed[0],
+            system=system.origin if system is not None and isinstance(system.origin, SystemOrigin) else None,
+            geometry=None if self._geometry is None else self._geometry[0],
+            constant=None if constant is None else constant[:2],
+            stokes=self._fell_back() if current and self._stokes and self._stokes[1] is system else None,
+            responding=self._stokes_respond,
+            factors=self.factors.memory(),
+            cycle=system.memory() if isinstance(system, SaddlePointSystem) else None,
+        )
+
+    def _fell_back(self) -> bool:
+        """Whether the factors without convection are those of the fallback."""
+        factor = _checked(self._stokes)
+        return factor is not None and factor.fell_back
+
+    def recall(self, memory: FluidMemory, matrices: Callable[[MatrixOrigin], TracedMatrices]) -> None:
+        """Make again what was kept, of what it was made from.
+
+        Parameters
+        ----------
+        memory : FluidMemory
+        matrices : callable
+            Makes element matrices as they were.
+        """
+        self._system = self._enclosed = self._geometry = self._constant = self._stokes = None
+        self.factors.forget()
+        if memory.enclosed is not None:
+            self.boundary.constrain_anew(memory.enclosed)
+            self.enclosed(memory.enclosed)
+        factors, own = memory.factors, memory.system
+        if factors is not None and not _same(factors.system, own):
+            self._recall_factors(factors, factors.system, matrices)
+        if own is not None:
+            system = self._system_of(own)
+            if factors is not None and _same(factors.system, own):
+                self._recall_factors(factors, system, matrices)
+            if isinstance(system, SaddlePointSystem) and memory.cycle is not None:
+                assert isinstance(memory.cycle.origin, MatrixOrigin)
+                system.recall(memory.cycle, matrices(memory.cycle.origin))
+        if memory.geometry is not None:
+            self.geometry(memory.geometry)
+        if memory.constant is not None:
+            self.constant_terms(*memory.constant)
+            if memory.stokes is not None:
+                self.stokes_factor(*memory.constant, responding=memory.responding)
+                factor = _checked(self._stokes)
+                if memory.stokes and factor is not None:
+                    factor.fall_back()
+        self.counts.recall(memory.counts)
+
+    def _system_of(self, origin: SystemOrigin) -> FluidSystem:
+        """Make a linear system again."""
+        self.boundary.constrain_anew(origin.constraints)
+        self._system = None
+        return self.system(origin.places)
+
+    def _recall_factors(
+        self,
+        memory: FactorsMemory,
+        system: object,
+        matrices: Callable[[MatrixOrigin], TracedMatrices],
+    ) -> None:
+        """Make factors again, for a system or the origin of one that is not at hand any more."""
+        system = self._system_of(system) if isinstance(system, SystemOrigin) else system
+        if not isinstance(system, CondensedSystem) or not system.exact:
+            return  # on another machine "auto" may choose another solver
+        origin = memory.origin
+        assert isinstance(origin, MatrixOrigin)
+        assert origin.velocity is not None
+        problem = Problem(origin.points, origin.rate, origin.share)
+        self.factors.recall(memory, system, problem, matrices(origin), origin.velocity)
+
+
+def _same(one: object, other: SystemOrigin | None) -> bool:
+    """Whether two linear systems were made from the same."""
+    if not isinstance(one, SystemOrigin) or other is None:
+        return False
+    return one.constraints is other.constraints and one.places is other.places
+
+
+def _checked(kept: tuple[ConstantTerms, FluidSystem, Solver] | None) -> CheckedSolver | None:
+    """The factors of a direct solver."""
+    if kept is None or not isinstance(kept[2], CondensedFactor):
+        return None
+    return kept[2].factor if isinstance(kept[2].factor, CheckedSolver) else None
 
 
 def _velocity_products(space: TaylorHood) -> tensor_products.ProductTables:

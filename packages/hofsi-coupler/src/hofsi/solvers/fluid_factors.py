@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from hofsi.counts import Counts
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
-from hofsi.fem.element_matrices import MatrixMaker
+from hofsi.fem.element_matrices import MatrixMaker, origin_of
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.lagged import LaggedSolver
 from hofsi.solvers.fluid_system import FluidSystem
 
 Array = NDArray[np.float64]
 
-__all__ = ["FluidFactors", "Problem"]
+__all__ = ["FactorsMemory", "FluidFactors", "Problem"]
 
 _LIMIT = 10  # iterations: more cost as much as new factors
 _FLOW = 0.5  # change of the velocity, as a part of the largest one
@@ -46,6 +46,31 @@ class Problem:
     share: float
 
 
+@dataclass(frozen=True, eq=False)
+class FactorsMemory:
+    """What factors were made from, and how they have served.
+
+    Attributes
+    ----------
+    origin : object
+        Of their matrix, see `hofsi.fem.element_matrices.origin_of`.
+    system : object
+        Of the linear system they belong to.
+    chord : bool
+        Whether they serve without a new matrix.
+    before : float
+        Norm of the residual that they were last applied to.
+    fell_back : bool
+        Whether those of the fallback have taken their place.
+    """
+
+    origin: object
+    system: object
+    chord: bool
+    before: float
+    fell_back: bool
+
+
 class FluidFactors:
     """Solves the linear systems of Newton's and Picard's iterations, with old factors where they serve.
 
@@ -70,6 +95,7 @@ class FluidFactors:
         self._factor: CheckedSolver | None = None
         self._system: CondensedSystem | None = None
         self._velocity, self._rate = np.zeros(0), 0.0
+        self._origin: object = None
         self._chord: tuple[CondensedFactor, Problem, Array] | None = None
         self._before = np.inf
 
@@ -119,7 +145,7 @@ class FluidFactors:
             self._counts.factorised(reason)
             solver = system.factorise(A)
             if isinstance(solver.factor, CheckedSolver):
-                self._keep(system, solver.factor, velocity, rate)
+                self._keep(system, solver.factor, velocity, rate, origin_of(A))
                 self._chord = solver, problem, self._velocity
             return solver.solve(r)
         lagged = system.lagged(A, self._factor, goal, _LIMIT)
@@ -128,8 +154,44 @@ class FluidFactors:
         self._counts.linear_iterations += lagged.factor.iterations
         if lagged.factor.renewed:
             self._counts.factorised("iterations")
-            self._keep(system, lagged.factor.factor, velocity, rate)
+            self._keep(system, lagged.factor.factor, velocity, rate, origin_of(A))
         return x
+
+    def memory(self) -> FactorsMemory | None:
+        """What the factors at hand can be made again from; None if there are none."""
+        if self._factor is None or self._system is None or self._origin is None:
+            return None
+        chord = self._chord is not None
+        return FactorsMemory(self._origin, self._system.origin, chord, self._before, self._factor.fell_back)
+
+    def forget(self) -> None:
+        """Start without factors."""
+        self._factor = self._system = self._chord = None
+        self._origin, self._before = None, np.inf
+
+    def recall(
+        self, memory: FactorsMemory, system: CondensedSystem, problem: Problem, A: MatrixMaker, velocity: Array
+    ) -> None:
+        """Make the factors of a memory again.
+
+        Parameters
+        ----------
+        memory : FactorsMemory
+        system : CondensedSystem
+            Of its ``system``.
+        problem : Problem
+        A : callable
+            The matrices of its ``origin``.
+        velocity : ndarray, shape (n, 2)
+            The one that the matrices belong to.
+        """
+        solver = system.factorise(A)
+        assert isinstance(solver.factor, CheckedSolver)
+        if memory.fell_back:
+            solver.factor.fall_back()
+        self._keep(system, solver.factor, velocity, problem.rate, memory.origin)
+        self._chord = (solver, problem, self._velocity) if memory.chord else None
+        self._before = memory.before
 
     def _chord_serves(self, problem: Problem, velocity: Array, norm: float) -> bool:
         """Whether the last factors belong to the same problem at nearly the same velocity, and have served so far."""
@@ -140,8 +202,11 @@ class FluidFactors:
             return False
         return bool(np.abs(velocity - at).max(initial=0.0) <= _NEAR * np.abs(velocity).max(initial=0.0))
 
-    def _keep(self, system: CondensedSystem, factor: CheckedSolver, velocity: Array, rate: float) -> None:
+    def _keep(
+        self, system: CondensedSystem, factor: CheckedSolver, velocity: Array, rate: float, origin: object
+    ) -> None:
         self._system, self._factor, self._velocity, self._rate = system, factor, velocity.copy(), rate
+        self._origin = origin
 
     def _reason(self, system: CondensedSystem, velocity: Array, rate: float) -> str:
         """Why old factors would not do; empty if they may."""

@@ -17,7 +17,7 @@ from hofsi.kernels import tensor_products
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["Coefficients", "ConstantTerms", "SideTerm", "element_matrices"]
+__all__ = ["Coefficients", "ConstantTerms", "MatrixOrigin", "SideTerm", "element_matrices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +56,33 @@ class Coefficients:
     along_eta: Array
     reaction: Array | None
     sides: Sequence[SideTerm]
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixOrigin:
+    """All that the element matrices of a case depend on.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2)
+    mesh_velocity : ndarray, shape (n, 2), or None
+        None without convection.
+    rate : float
+        Weight of the new velocity in the time derivative; 0 if steady.
+    share : float
+        Of the convection.
+    velocity : ndarray, shape (n, 2), or None
+        What they are linearised about; None without convection.
+    newton : bool
+        Whether they have Newton's term.
+    """
+
+    points: Array
+    mesh_velocity: Array | None
+    rate: float
+    share: float
+    velocity: Array | None
+    newton: bool
 
 
 class ConstantTerms:

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.fem.assembly import assemble_vector
-from hofsi.fem.element_matrices import MatrixMaker, batches
+from hofsi.fem.element_matrices import TracedMatrices, batches
 from hofsi.kernels import navier_stokes as kernel
 from hofsi.solvers.fluid_equations import FluidEquations
-from hofsi.solvers.fluid_matrices import Coefficients, element_matrices
+from hofsi.solvers.fluid_matrices import Coefficients, MatrixOrigin, element_matrices
 from hofsi.solvers.fluid_system import FluidSystem
 
 Array = NDArray[np.float64]
@@ -31,6 +31,8 @@ class FluidOperator:
         What the old velocities contribute to it.
     time : float
         At which loads are taken.
+    share : float, optional
+        Of the convection.
 
     Attributes
     ----------
@@ -41,10 +43,18 @@ class FluidOperator:
     """
 
     def __init__(
-        self, equations: FluidEquations, points: Array, mesh_velocity: Array, rate: float, history: Array, time: float
+        self,
+        equations: FluidEquations,
+        points: Array,
+        mesh_velocity: Array,
+        rate: float,
+        history: Array,
+        time: float,
+        *,
+        share: float = 1.0,
     ) -> None:
         self._equations, self._points, self._mesh_velocity, self._rate = equations, points, mesh_velocity, rate
-        self.share = 1.0
+        self.share = share
         self._about: tuple[Array, Array] | None = None
         self.load = self._external(history, time)
 
@@ -66,7 +76,7 @@ class FluidOperator:
         equations.boundary.add_loads(f, self._points, time)
         return f
 
-    def matrices(self, velocity: Array, *, newton: bool) -> MatrixMaker:
+    def matrices(self, velocity: Array, *, newton: bool) -> TracedMatrices:
         """What makes element matrices A(u) of a nodal velocity (n, 2), with the convection ∫ ρ ((u - w)·∇·)·v.
 
         With ``newton`` Newton's term ∫ ρ (·∇u)·v is added.
@@ -80,7 +90,8 @@ class FluidOperator:
         equations.counts.backflows += bool(sides)
         equations.counts.assemblies += 1
         constant = equations.constant_terms(self._points, self._rate).ask()
-        return element_matrices(constant, Coefficients(*along, reaction, sides))
+        origin = MatrixOrigin(self._points, self._mesh_velocity, self._rate, self.share, velocity, newton)
+        return TracedMatrices(element_matrices(constant, Coefficients(*along, reaction, sides)), origin)
 
     @property
     def _density(self) -> float:

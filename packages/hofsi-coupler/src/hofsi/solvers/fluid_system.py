@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -20,7 +21,23 @@ from hofsi.linear.solver import Solver
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["FluidSystem", "factorised", "fluid_system"]
+__all__ = ["FluidSystem", "SystemOrigin", "factorised", "fluid_system"]
+
+
+@dataclass(frozen=True, eq=False)
+class SystemOrigin:
+    """What the pattern of a linear system was made from.
+
+    Attributes
+    ----------
+    constraints : ndarray, shape (n, 2)
+        Node positions at which its constraints were made.
+    places : ndarray, shape (n, 2)
+        Node positions by which its elements are ordered.
+    """
+
+    constraints: Array
+    places: Array
 
 
 class FluidSystem(Protocol):
@@ -34,11 +51,14 @@ class FluidSystem(Protocol):
         How many local unknowns lie on the element's boundary.
     unknowns : ndarray
         Free unknowns on the elements' boundaries.
+    origin : object
+        What it was made from.
     """
 
     dofs: Index
     boundary: int
     unknowns: Index
+    origin: object
 
     def prepare(self) -> None:
         """Make what can be known before the numbers."""

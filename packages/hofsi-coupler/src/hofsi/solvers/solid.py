@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +11,11 @@ from hoblock import QuadMesh
 from hofsi import case
 from hofsi.counts import Counts
 from hofsi.errors import ConvergenceError, NewtonError
+from hofsi.linear.checked import CheckedSolver
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_newton import SolidNewton, Tangent
 from hofsi.solvers.solid_rest import check_held
+from hofsi.solvers.solid_state import SolidMemory, SolidState
 from hofsi.solvers.solid_supports import SolidSupports
 from hofsi.solvers.solid_system import solid_system
 from hofsi.timestepping.second_order import (
@@ -27,57 +28,7 @@ from hofsi.timestepping.second_order import (
 
 Array = NDArray[np.float64]
 
-__all__ = ["SolidSolver", "SolidState", "SolidStep"]
-
-
-def _frozen(array: Array) -> Array:
-    view = array.view()
-    view.setflags(write=False)
-    return view
-
-
-@dataclass(frozen=True, eq=False)
-class SolidState:
-    """Solids at the end of a step.
-
-    Attributes
-    ----------
-    displacements, velocities : tuple of ndarray, shape (n, 2)
-        Newest first, at most two; read-only.
-    time : float
-    reaction : ndarray, shape (n, 2), or None
-        Nodal forces of the supports on the solid, zero where nothing holds it; read-only. None in an initial state.
-    accelerations : tuple of ndarray, shape (n, 2)
-        The newest, if the scheme needs it; for the midpoint rule that of the middle of the last step. Read-only.
-    loads : tuple of ndarray, shape (n, 2)
-        Nodal forces of the fluid, newest first, at most two; read-only. Empty in an initial state.
-    step : float
-        Size of the last step, 0 in an initial state.
-    """
-
-    displacements: tuple[Array, ...]
-    velocities: tuple[Array, ...]
-    time: float
-    reaction: Array | None = None
-    accelerations: tuple[Array, ...] = ()
-    loads: tuple[Array, ...] = ()
-    step: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.reaction is not None:
-            object.__setattr__(self, "reaction", _frozen(self.reaction))
-        for name in ("displacements", "velocities", "accelerations", "loads"):
-            object.__setattr__(self, name, tuple(_frozen(array) for array in getattr(self, name)))
-
-    @property
-    def displacement(self) -> Array:
-        """Newest displacement."""
-        return self.displacements[0]
-
-    @property
-    def velocity(self) -> Array:
-        """Newest velocity."""
-        return self.velocities[0]
+__all__ = ["SolidMemory", "SolidSolver", "SolidState", "SolidStep"]
 
 
 class SolidSolver:
@@ -190,6 +141,29 @@ class SolidSolver:
         """Keep a tangent for later steps if it holds for them: if all solids are linear."""
         if self.equations.linear:
             self._tangent = tangent
+
+    def memory(self) -> SolidMemory:
+        """What is kept between steps, so that `resume` can make it again."""
+        kept = self._tangent
+        if kept is None:
+            return SolidMemory(self.counts.copy())
+        factor = kept.factor.factor
+        return SolidMemory(self.counts.copy(), kept.mass_factor, isinstance(factor, CheckedSolver) and factor.fell_back)
+
+    def resume(self, memory: SolidMemory) -> None:
+        """Become what the solver was when `memory` was asked for.
+
+        The tangent of linear solids depends on neither displacement nor loads.
+        """
+        self._tangent = None
+        if memory.mass_factor is not None and self.equations.linear:
+            gradient = self.equations.gradient(np.zeros(self.mesh.points.shape))
+            K = self.equations.tangent(gradient, self.equations.stress(gradient), memory.mass_factor, ())
+            factor = self.system.factorise(K)
+            if memory.fell_back and isinstance(factor.factor, CheckedSolver):
+                factor.factor.fall_back()
+            self._tangent = Tangent(memory.mass_factor, K, factor)
+        self.counts.recall(memory.counts)
 
     def tangent(self, mass_factor: float) -> Tangent | None:
         """Return the tangent that was kept, if it holds for a step with this mass factor."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from hofsi.timestepping.schemes import extrapolation_weights
 
 Array = NDArray[np.float64]
 
-__all__ = ["LocalErrors", "error_share"]
+__all__ = ["ErrorMemory", "LocalErrors", "error_share"]
 
 _VALUES = 3  # of earlier steps, for a prediction of second order
 
@@ -35,6 +36,22 @@ def error_share(steps: Sequence[float]) -> float:
     h, h1, h2 = steps[:3]
     own = h * (h + h1) / (2.0 * h + h1)
     return own / (own + h + h1 + h2)
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorMemory:
+    """What errors are estimated from.
+
+    Attributes
+    ----------
+    values : mapping of str to tuple of ndarray, shape (n, 2)
+        The last values of each field, newest first.
+    largest : mapping of str to float
+        The largest norm of each so far.
+    """
+
+    values: Mapping[str, tuple[Array, ...]]
+    largest: Mapping[str, float]
 
 
 class LocalErrors:
@@ -87,6 +104,15 @@ class LocalErrors:
         for name, value in values.items():
             self._values[name] = [value, *self._values[name]][:_VALUES]
             self._largest[name] = max(self._largest[name], self._norm(name, value))
+
+    def memory(self) -> ErrorMemory:
+        """What is remembered."""
+        return ErrorMemory({name: tuple(kept) for name, kept in self._values.items()}, dict(self._largest))
+
+    def recall(self, memory: ErrorMemory) -> None:
+        """Take back what was remembered."""
+        self._values = {name: list(kept) for name, kept in memory.values.items()}
+        self._largest = dict(memory.largest)
 
     def _norm(self, name: str, value: Array) -> float:
         return float(np.sqrt(self._weights[name] @ (value * value).sum(axis=1)))
