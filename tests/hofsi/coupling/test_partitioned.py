@@ -210,7 +210,7 @@ def tip(problem, records):
 def test_every_acceleration_finds_the_same_solution():
     reference = tip(*run(FLAP, ("[time]", "[coupling]\ntolerance = 1e-9\n[time]")))
     assert np.abs(reference).max() > 1e-4
-    for kind in ("aitken", "constant"):
+    for kind in ("imvj", "aitken", "constant"):
         other = tip(*run(FLAP, ("[time]", f'[coupling]\nacceleration = "{kind}"\ntolerance = 1e-9\n[time]')))
         np.testing.assert_allclose(other, reference, atol=1e-7 * np.abs(reference).max())
 

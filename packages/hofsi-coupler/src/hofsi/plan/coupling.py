@@ -33,7 +33,12 @@ _MOVERS = {
     AngleOptimisationSettings: "angle optimisation",
     RuleSettings: "rule",
 }
-_ACCELERATIONS = {"iqn-ils": "IQN-ILS", "aitken": "Aitken's relaxation", "constant": "constant relaxation"}
+_ACCELERATIONS = {
+    "iqn-ils": "IQN-ILS",
+    "imvj": "IMVJ",
+    "aitken": "Aitken's relaxation",
+    "constant": "constant relaxation",
+}
 
 
 def _mover(case: Case, structure: BlockStructure, mesh: QuadMesh, edges: Index) -> str:
