@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from hofsi.build import Problem
     from hofsi.case import Case
     from hofsi.errors import (
+        AddedMassError,
         CaseError,
         ConvergenceError,
         CouplingError,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from hofsi.run import Result
 
 _MODULES = {
+    "AddedMassError": "hofsi.errors",
     "Case": "hofsi.case",
     "CaseError": "hofsi.errors",
     "ConvergenceError": "hofsi.errors",
@@ -57,6 +59,7 @@ _MODULES = {
 }
 
 __all__ = [
+    "AddedMassError",
     "Case",
     "CaseError",
     "ConvergenceError",

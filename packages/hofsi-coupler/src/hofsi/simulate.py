@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hofsi import case
 from hofsi.build import Problem
-from hofsi.errors import ConvergenceError
+from hofsi.errors import AddedMassError, ConvergenceError
 from hofsi.fem.nodal_weights import nodal_weights
 from hofsi.records import CouplingRecord, Rejection, State, StepRecord
 from hofsi.threads import one_thread
@@ -20,6 +20,7 @@ __all__ = ["simulate"]
 
 Array = NDArray[np.float64]
 
+_SAME_GAIN = 0.9  # of the gain with twice the step, which differs a little from step to step
 _STEPS = 4  # step sizes remembered, for multi-step schemes and predictors
 
 
@@ -56,6 +57,7 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
     control = StepControl(times)
     errors = None if times.tolerance is None else _local_errors(problem)
     rejected: list[Rejection] = []
+    last: ConvergenceError | None = None
     number = 1
     while not control.finished:
         time, size = control.time, control.size
@@ -65,6 +67,9 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
                 new, coupling = problem.march.step(state, steps, time)
                 error = None if errors is None else errors.estimate(_fields(new), steps)
         except ConvergenceError as failure:
+            if _is_worse(failure, last):
+                raise _got_worse(failure, size) from failure
+            last = failure
             if control.halve(failed=True):
                 rejected.append(Rejection(size, type(failure).__name__, str(failure)))
                 continue
@@ -76,7 +81,7 @@ def simulate(problem: Problem) -> Iterator[StepRecord]:
             errors.keep(_fields(new))
         yield _record(number, time, size, new, coupling, control.done, error, tuple(rejected))
         control.advance(error)
-        state, sizes, rejected, number = new, steps, [], number + 1
+        state, sizes, rejected, last, number = new, steps, [], None, number + 1
 
 
 def _record(
@@ -93,14 +98,25 @@ def _record(
     return StepRecord(number, time, dt, state, coupling, bound, done, error, rejected)
 
 
+def _is_worse(failure: ConvergenceError, last: ConvergenceError | None) -> bool:
+    """Whether a step failed for the added mass, as the one of twice its size did before, and came no further."""
+    if not isinstance(failure, AddedMassError) or not isinstance(last, AddedMassError):
+        return False
+    return failure.residual >= last.residual and failure.gain >= _SAME_GAIN * last.gain
+
+
+def _got_worse(failure: ConvergenceError, size: float) -> ConvergenceError:
+    """The error of a step that half the size did not help."""
+    return failure.extended(f"Half of the step, {size:.6g}, came no further than the whole; it is not halved again.")
+
+
 def _given_up(failure: ConvergenceError, size: float, times: case.Unsteady) -> ConvergenceError:
     """The error of the smallest step."""
     if not times.halvings:
         return failure
-    problem = (
-        f"{failure.problem} That was the smallest step, {size:.6g}: dt, halved time.halvings = {times.halvings} times."
+    return failure.extended(
+        f"That was the smallest step, {size:.6g}: dt, halved time.halvings = {times.halvings} times."
     )
-    return type(failure)(problem, failure.reason, failure.where)
 
 
 def _local_errors(problem: Problem) -> LocalErrors:

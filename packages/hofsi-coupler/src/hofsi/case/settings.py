@@ -87,7 +87,7 @@ class CouplingSettings:
         "implicit" makes a new mesh in every coupling iteration.
     predictor : int
         Order of extrapolation of the interface displacement, 0 to 3.
-    tolerance : float
+    tolerance, force_tolerance : float
         Of displacement and force, relative to the step's increment.
     max_iterations : int
     reuse : int
@@ -102,6 +102,7 @@ class CouplingSettings:
     geometry: Literal["extrapolated", "implicit"] = "extrapolated"
     predictor: int = 2
     tolerance: float = 1e-6
+    force_tolerance: float = 1e-4
     max_iterations: int = 50
     reuse: int = 10
     filter: float = 1e-3

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.failure import coupling_failure
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
 from hofsi.coupling.relaxation import Accelerator
+from hofsi.coupling.stall import StallWatch, Verdict
 from hofsi.errors import ConvergenceError, CouplingError
 from hofsi.motion import MeshMotion, MeshState
 from hofsi.records import CouplingRecord, State
@@ -29,7 +31,7 @@ __all__ = ["CoupledMarch"]
 _HISTORY = 4  # interface displacements kept: a cubic predictor needs four
 _SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
 _NEWTON = 2  # Newton iterations of the fluid in one coupling iteration
-_NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers
+_STEADY = "steady coupling"
 _INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
 
 
@@ -74,7 +76,7 @@ class CoupledMarch:
         self._fluid, self._solid, self._interface, self._motion = fluid, solid, interface, motion
         self._prescribed, self._settings = prescribed, settings
         self._accelerator, self._clock = accelerator, clock
-        self._test = ConvergenceTest(settings.tolerance)
+        self._test = ConvergenceTest(settings.tolerance, settings.force_tolerance)
         self._rows = np.searchsorted(motion.driven.nodes, interface.fluid)
         held = np.logical_and.reduce(solid.supports.constraints.fixed[interface.solid], axis=1)
         self._load = InterfaceLoad(fluid, interface, held)
@@ -197,7 +199,7 @@ class CoupledMarch:
             return step, moved
 
         self._test.begin_step(0.0, 0.0)
-        return self._iterate(displacement[self._interface.solid], flow, solid_step, "steady coupling", share)
+        return self._iterate(displacement[self._interface.solid], flow, solid_step, _STEADY, share)
 
     def _iterate(
         self,
@@ -227,7 +229,8 @@ class CoupledMarch:
         self._accelerator.begin_step()
         inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
         displacement: Array | None = None
-        residuals = Residuals(np.inf, np.inf)
+        residuals, watch = Residuals(np.inf, np.inf), StallWatch()
+        verdict: Verdict = ""
         for iteration in range(1, settings.max_iterations + 1):
             step, moved = flow(d)
             with self._clock.phase("fluid"):
@@ -240,29 +243,18 @@ class CoupledMarch:
             if not (np.isfinite(residual).all() and np.isfinite(force).all()):
                 raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
             residuals = self._test.residuals(image, residual, force)
-            if step.converged and residuals.largest <= settings.tolerance:
+            excess = self._test.excess(residuals)
+            if step.converged and excess <= 1.0:
                 self._accelerator.end_step()
                 record = CouplingRecord(iteration, residuals.displacement, residuals.force)
                 mesh = replace(moved, regenerated=self._regenerated)
                 return _Fields(fluid, mesh, solid_step, displacement), record
+            verdict = watch.observe(image, residual, excess)
+            if verdict:
+                break
             with self._clock.phase("coupling"):
                 d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
-        raise CouplingError(
-            f"not converged after {settings.max_iterations} iterations: displacement residual "
-            f"{residuals.displacement:.2g}, force residual {residuals.force:.2g}, expected below "
-            f"{settings.tolerance:g}. {self._way_out(residuals)}",
-            "max_iterations",
-            where,
-        )
-
-    def _way_out(self, residuals: Residuals) -> str:
-        settings = self._settings
-        if residuals.largest < _NEARLY:
-            return "That is close to rounding: raise coupling.tolerance."
-        ways = "Lower time.dt, or the load of a steady case, or raise coupling.max_iterations"
-        if settings.acceleration != "iqn-ils":
-            ways += ', or set coupling.acceleration = "iqn-ils"'
-        return f"{ways}."
+        raise coupling_failure(verdict, residuals, self._test, watch, settings, where, steady=where == _STEADY)
 
     def _nodal(self, force: Array) -> Array:
         nodal = np.zeros(self._solid.mesh.points.shape)

@@ -68,7 +68,7 @@ def coupling_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     yield Item(
         "coupling",
         f"{_ACCELERATIONS[settings.acceleration]} to {settings.tolerance:g} in displacement and "
-        f"force, at most {settings.max_iterations} iterations",
+        f"{settings.force_tolerance:g} in force, at most {settings.max_iterations} iterations",
     )
     if isinstance(case.time, Steady) or settings.geometry == "implicit":
         yield Item("geometry", "implicit: a new fluid mesh in every coupling iteration")
