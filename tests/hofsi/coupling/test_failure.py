@@ -41,9 +41,21 @@ def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils",
             "max_iterations",
             r"noise of the solvers: raise coupling.tolerance or coupling.for",
         ),
-        ({"acceleration": "aitken"}, "max_iterations", r'or set coupling.acceleration = "iqn-ils"\.$'),
-        ({"steady": True, "gain": 3.0}, "max_iterations", r"Lower the load, or start nearer to the solution"),
-        ({"gain": 3.0}, "max_iterations", r"by 3 times the opposite one: its added mass .* Make the solid heavier"),
+        (
+            {"acceleration": "aitken"},
+            "max_iterations",
+            r'Lower time.dt, or set coupling.acceleration = "iqn-ils", or raise',
+        ),
+        (
+            {"steady": True, "gain": 3.0},
+            "max_iterations",
+            r"Raise coupling.max_iterations, or lower the load, or start nearer to the solution\.$",
+        ),
+        (
+            {"gain": 3.0},
+            "max_iterations",
+            r"by 3 times the opposite one: its added mass .* Raise .*, or make the solid heavier",
+        ),
     ],
 )
 def test_message(options, reason, expected):

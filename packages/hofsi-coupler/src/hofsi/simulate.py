@@ -102,7 +102,8 @@ def _is_worse(failure: ConvergenceError, last: ConvergenceError | None) -> bool:
     """Whether a step failed for the added mass, as the one of twice its size did before, and came no further."""
     if not isinstance(failure, AddedMassError) or not isinstance(last, AddedMassError):
         return False
-    return failure.residual >= last.residual and failure.gain >= _SAME_GAIN * last.gain
+    no_nearer = failure.residual >= last.residual or failure.reason == last.reason == "diverged"
+    return no_nearer and failure.gain >= _SAME_GAIN * last.gain
 
 
 def _got_worse(failure: ConvergenceError, size: float) -> ConvergenceError:

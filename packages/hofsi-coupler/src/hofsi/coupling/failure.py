@@ -45,16 +45,17 @@ def coupling_failure(
             "nonlinear.tolerance."
         )
         return CouplingError(f"{problem} {way}", reason, where)
+    more = _more(verdict, settings)
     if steady:
-        way = f"Lower the load, or start nearer to the solution{_more(verdict, settings)}."
+        way = _choice([*more, "lower the load", "start nearer to the solution"])
         return CouplingError(f"{problem} {way}", reason, where)
     if watch.gain <= _HEAVY:
-        return CouplingError(f"{problem} Lower time.dt{_more(verdict, settings)}.", reason, where)
+        return CouplingError(f"{problem} {_choice(['lower time.dt', *more])}", reason, where)
     added = (
         f"The fluid answers a displacement of the solid by {watch.gain:.2g} times the opposite one: its added mass "
         "dominates a light solid, and smaller steps do not change that"
     )
-    way = f"Make the solid heavier or stiffer, or loads less sudden{_more(verdict, settings)}."
+    way = _choice([*more, "make the solid heavier or stiffer", "let loads begin less suddenly"])
     return AddedMassError(f"{problem} {added}. {way}", reason, where, gain=watch.gain, residual=watch.best)
 
 
@@ -73,9 +74,12 @@ def _left(residuals: Residuals, test: ConvergenceTest) -> str:
     )
 
 
-def _more(verdict: Verdict, settings: CouplingSettings) -> str:
+def _more(verdict: Verdict, settings: CouplingSettings) -> list[str]:
     """Settings that may help."""
-    ways = "" if verdict else ", or raise coupling.max_iterations"
-    if settings.acceleration not in ("iqn-ils", "imvj"):
-        ways += ', or set coupling.acceleration = "iqn-ils"'
-    return ways
+    ways = [] if settings.acceleration in ("iqn-ils", "imvj") else ['set coupling.acceleration = "iqn-ils"']
+    return ways if verdict else [*ways, "raise coupling.max_iterations"]
+
+
+def _choice(ways: list[str]) -> str:
+    text = ", or ".join(ways)
+    return f"{text[0].upper()}{text[1:]}."

@@ -169,10 +169,10 @@ class CoupledMarch:
             except ConvergenceError as error:
                 part *= 0.5
                 if part < _SMALLEST_PART:
-                    raise type(error)(
-                        f"{error.problem} Applied little by little, {done:.3g} of the fluid's load was reached.",
-                        error.reason,
-                        error.where,
+                    raise error.extended(
+                        f"Applied little by little, {done:.3g} of the fluid's load was reached: there may be no steady "
+                        "state near the start, as of a solid that buckles or is too soft for the flow. Lower the load, "
+                        "stiffen the solid, give an initial_displacement nearer to the state, or march in time."
                     ) from error
                 continue
             if reached == 1.0:
