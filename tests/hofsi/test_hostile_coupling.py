@@ -102,4 +102,5 @@ def test_a_light_solid_is_no_trouble_for_quasi_newton_methods(run: Run, accelera
     code, message, folder = run([*LIGHT, (COUPLING, f'[coupling]\nacceleration = "{acceleration}"')])
     assert (code, message) == (0, "")
     counts = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["counts"]
-    assert counts["coupling_iterations"] <= 15 * counts["steps"] == 15 * 20
+    assert 20 <= counts["steps"] <= 24  # the sudden start may want smaller steps
+    assert counts["coupling_iterations"] <= 15 * counts["steps"]

@@ -121,3 +121,17 @@ def test_a_repeated_residual_makes_no_secant():
     np.testing.assert_array_equal(accelerator.next(d, r), first)
     accelerator.end_step()
     assert accelerator.rank == 0
+
+
+def test_after_failures_the_first_iterate_is_nearer_until_a_step_converges():
+    accelerator = MultiVector(5, 1e-3, 0.5)
+    d, r, moved = np.zeros(2), np.array([1.0, -1.0]), []
+    for _ in range(3):
+        accelerator.begin_step()
+        moved.append(accelerator.next(d, r)[0])
+        accelerator.forget()
+    accelerator.begin_step()
+    accelerator.end_step()
+    accelerator.begin_step()
+    moved.append(accelerator.next(d, r)[0])
+    np.testing.assert_allclose(moved, [0.5, 0.05, 0.005, 0.5])

@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 
 __all__ = ["MultiVector"]
 
+_CARE = 0.1  # what a failure leaves of the first relaxation factor
+
 
 class MultiVector:
     """IMVJ: the inverse Jacobian of the step before, corrected by the secants of the step at hand.
@@ -32,7 +34,8 @@ class MultiVector:
     filter : float
         Of the secants, see `Secants`, and of the singular values.
     relaxation : float
-        Factor of the residual while there are no secants.
+        Factor of the residual while there are no secants; a tenth of it after each failure until a step converges: a
+        first iterate that is far off can be more than the solid bears.
 
     References
     ----------
@@ -44,6 +47,7 @@ class MultiVector:
     def __init__(self, restart: int, filter: float, relaxation: float) -> None:
         self._restart, self._filter, self._relaxation = restart, filter, relaxation
         self._secants = Secants(filter)
+        self._care = 1.0  # factor of the relaxation: smaller after failures
         self._left: Array | None = None  # A, shape (k, m)
         self._right: Array | None = None  # B, shape (m, k)
         self._steps = 0  # since the last compression
@@ -62,7 +66,7 @@ class MultiVector:
         image = d + residual
         self._secants.add(residual, image)
         if self._left is None and not self._secants.columns:
-            return d + self._relaxation * residual
+            return d + self._care * self._relaxation * residual
         change = self._kept(residual)
         if self._secants.columns:
             left, right = self._update()
@@ -82,6 +86,7 @@ class MultiVector:
 
     def end_step(self) -> None:
         """Add the step's update to what is kept, and compress that from time to time."""
+        self._care = 1.0
         if self._secants.columns and self._restart:
             left, right = self._update()
             if self._left is not None and self._right is not None:
@@ -105,6 +110,7 @@ class MultiVector:
 
     def forget(self) -> None:
         """Drop the Jacobian and all secants."""
+        self._care *= _CARE
         self._left = self._right = None
         self._steps = 0
         self._secants.begin_step()

@@ -14,6 +14,8 @@ __all__ = ["InverseLeastSquares"]
 
 _OLDEST = 60  # ages beyond it count as this one: their columns have no weight any more
 
+_CARE = 0.1  # what a failure leaves of the first relaxation factor
+
 
 class InverseLeastSquares:
     """IQN-ILS with reuse of earlier steps and the QR2 filter.
@@ -35,7 +37,8 @@ class InverseLeastSquares:
     filter : float
         A column whose part orthogonal to the newer ones of its step is below this fraction of it is dropped for good.
     relaxation : float
-        Factor of the residual while there are no columns.
+        Factor of the residual while there are no columns; a tenth of it after each failure until a step converges: a
+        first iterate that is far off can be more than the solid bears.
 
     References
     ----------
@@ -47,6 +50,7 @@ class InverseLeastSquares:
         self._reuse, self._filter, self._relaxation = reuse, filter, relaxation
         self._steps: list[list[tuple[Array, Array]]] = []  # newest step first, newest column first
         self._secants = Secants(filter)
+        self._care = 1.0  # factor of the relaxation: smaller after failures
 
     @property
     def columns(self) -> int:
@@ -69,7 +73,7 @@ class InverseLeastSquares:
         steps = [self._secants.columns, *self._steps]
         columns = [column for step in steps for column in step]
         if not columns:
-            return d + self._relaxation * residual
+            return d + self._care * self._relaxation * residual
         V, W = (np.stack(part, axis=1) for part in zip(*columns, strict=True))
         weights = [self._weight(age) for age, step in enumerate(steps) for _ in step]
         system = np.concatenate([V, np.diag(weights)])
@@ -81,10 +85,12 @@ class InverseLeastSquares:
 
     def forget(self) -> None:
         """Drop all columns."""
+        self._care *= _CARE
         self._steps = []
         self._secants.begin_step()
 
     def end_step(self) -> None:
         """Keep the step's columns and forget the oldest step."""
+        self._care = 1.0
         self._steps = [self._secants.columns, *self._steps][: self._reuse]
         self._secants.begin_step()
