@@ -70,7 +70,10 @@ class MultiVector:
         change = self._kept(residual)
         if self._secants.columns:
             left, right = self._update()
-            change = change + left @ (right @ residual)
+            c = right @ residual
+            change = change + left @ c
+            if self._care < 1.0:  # nothing is kept then
+                change = change + (1.0 - self._care) * (residual - self._secants.residuals @ c)
         return np.asarray(image - change)
 
     def _kept(self, v: Array) -> Array:

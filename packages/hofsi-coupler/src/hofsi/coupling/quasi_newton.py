@@ -78,7 +78,8 @@ class InverseLeastSquares:
         weights = [self._weight(age) for age, step in enumerate(steps) for _ in step]
         system = np.concatenate([V, np.diag(weights)])
         c = np.linalg.lstsq(system, np.concatenate([-residual, np.zeros(len(columns))]))[0]
-        return np.asarray(image + W @ c)
+        unexplained = residual + V @ c
+        return np.asarray(image + W @ c - (1.0 - self._care) * unexplained)
 
     def _weight(self, age: int) -> float:
         return float(np.ldexp(self._filter, min(age, _OLDEST) + 1)) if age else 0.0

@@ -37,6 +37,11 @@ class Secants:
         self.columns: list[tuple[Array, Array]] = []
         self.dropped = 0
 
+    @property
+    def residuals(self) -> Array:
+        """V: the differences v side by side, shape (k, m)."""
+        return np.stack([v for v, _ in self.columns], axis=1)
+
     def begin_step(self) -> None:
         """Start without columns."""
         self.columns, self._last = [], None
