@@ -25,6 +25,7 @@ QUICK = {
     "fsi3_ring": ["time.end=0.01"],
     "oscillating_cylinder": ["time.end=0.1"],
     "pitching_airfoil": ["time.end=0.04"],
+    "pressure_pulse": ["time.end=0.001"],
     "wall_ramm": ["time.dt=0.005", "time.end=0.01"],
 }
 

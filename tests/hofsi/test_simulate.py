@@ -12,7 +12,7 @@ from hofsi.build import Problem, build
 from hofsi.case import Case, Unsteady
 from hofsi.clock import Clock
 from hofsi.counts import Counts
-from hofsi.errors import CouplingError
+from hofsi.errors import AddedMassError, CouplingError
 from hofsi.io.scene import read_case
 from hofsi.quantities import evaluators
 from hofsi.records import CouplingRecord, State
@@ -93,6 +93,34 @@ def test_without_halvings_the_first_failure_is_the_error(case: Case) -> None:
         list(simulate(problem_of(march, Unsteady(1.0, 0.0, 4.0, 4, halvings=0), case)))
     assert str(caught.value) == "coupling, t = 1: not converged."
     assert len(march.calls) == 1
+
+
+class Light(Fragile):
+    """A march whose steps fail for the added mass, and are left with a residual."""
+
+    def __init__(self, residual: Callable[[float], float]) -> None:
+        super().__init__(lambda time: 0.3)
+        self._residual = residual
+
+    def step(self, state: State, steps: Sequence[float], time: float) -> tuple[State, CouplingRecord | None]:
+        try:
+            return super().step(state, steps, time)
+        except CouplingError as error:
+            raise AddedMassError("not converged.", "stalled", error.where, 5.0, self._residual(steps[0])) from error
+
+
+def test_a_step_whose_half_comes_no_further_for_the_added_mass_is_not_halved_again(case: Case) -> None:
+    march = Light(lambda dt: 1.0 / dt)
+    with pytest.raises(AddedMassError, match=r"not converged. Half of the step, 0.5, came no further than the whole"):
+        list(simulate(problem_of(march, Unsteady(1.0, 0.0, 4.0, 4), case)))
+    assert [steps[0] for steps in march.calls] == [1.0, 0.5]
+
+
+def test_a_step_whose_half_comes_further_is_halved_in_spite_of_the_added_mass(case: Case) -> None:
+    march = Light(lambda dt: dt)
+    *_, record = simulate(problem_of(march, Unsteady(1.0, 0.0, 1.0, 1), case))
+    assert record.time == 1.0
+    assert [steps[0] for steps in march.calls[:3]] == [1.0, 0.5, 0.25]
 
 
 PULSE = "(1 + 4*exp(-400*(t - 0.5)**2))"

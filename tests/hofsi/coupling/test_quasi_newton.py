@@ -96,7 +96,7 @@ def test_what_is_forgotten_does_not_help_later_steps():
     iterations(reused, A, b, exact)
     reused.forget()
     assert reused.columns == 0
-    assert iterations(reused, A, 2.0 * b, 2.0 * exact) == iterations(fresh, A, 2.0 * b, 2.0 * exact)
+    assert abs(iterations(reused, A, 2.0 * b, 2.0 * exact) - iterations(fresh, A, 2.0 * b, 2.0 * exact)) <= 1
 
 
 def test_with_the_columns_of_another_it_goes_on_as_that():
@@ -132,3 +132,17 @@ def test_columns_of_more_steps_than_are_reused_are_left_out():
         iterations(one, A, factor * b, factor * exact)
     two.recall(one.memory())
     assert len(two.memory().steps) == 1
+
+
+def test_after_failures_the_first_iterate_is_nearer_until_a_step_converges():
+    accelerator = InverseLeastSquares(5, 1e-3, 0.5)
+    d, r, moved = np.zeros(2), np.array([1.0, -1.0]), []
+    for _ in range(3):
+        accelerator.begin_step()
+        moved.append(accelerator.next(d, r)[0])
+        accelerator.forget()
+    accelerator.begin_step()
+    accelerator.end_step()
+    accelerator.begin_step()
+    moved.append(accelerator.next(d, r)[0])
+    np.testing.assert_allclose(moved, [0.5, 0.05, 0.005, 0.5])

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from hofsi.build import Problem
     from hofsi.case import Case
     from hofsi.errors import (
+        AddedMassError,
         CaseError,
         ConvergenceError,
         CouplingError,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from hofsi.report import Result
 
 _MODULES = {
+    "AddedMassError": "hofsi.errors",
     "Case": "hofsi.case",
     "CaseError": "hofsi.errors",
     "ConvergenceError": "hofsi.errors",
@@ -59,6 +61,7 @@ _MODULES = {
 }
 
 __all__ = [
+    "AddedMassError",
     "Case",
     "CaseError",
     "ConvergenceError",

@@ -221,6 +221,10 @@ def _accelerator(settings: case.CouplingSettings) -> Accelerator:
         from hofsi.coupling.quasi_newton import InverseLeastSquares
 
         return InverseLeastSquares(settings.reuse, settings.filter, settings.relaxation)
+    if settings.acceleration == "imvj":
+        from hofsi.coupling.multi_vector import MultiVector
+
+        return MultiVector(settings.reuse, settings.filter, settings.relaxation)
     from hofsi.coupling.relaxation import Aitken, ConstantRelaxation
 
     return Aitken(settings.relaxation) if settings.acceleration == "aitken" else ConstantRelaxation(settings.relaxation)

@@ -6,11 +6,13 @@ scene come from `hoblock.errors`.
 
 from __future__ import annotations
 
-from typing import ClassVar
+from copy import copy
+from typing import ClassVar, Self
 
 from hoblock.errors import SceneError
 
 __all__ = [
+    "AddedMassError",
     "CaseError",
     "ConvergenceError",
     "CouplingError",
@@ -77,6 +79,13 @@ class ConvergenceError(HofsiError):
         self.reason = reason
         self.where = where
 
+    def extended(self, text: str) -> Self:
+        """Return the same error with a sentence more."""
+        problem = f"{self.problem} {text}"
+        other = copy(self)
+        other.args, other.problem = (problem, self.reason, self.where), problem
+        return other
+
     def __str__(self) -> str:
         return f"{self.where}: {self.problem}" if self.where else self.problem
 
@@ -91,6 +100,27 @@ class LinearSolverError(ConvergenceError):
 
 class CouplingError(ConvergenceError):
     """Fluid and solid were not brought to agree."""
+
+
+class AddedMassError(CouplingError):
+    """Fluid and solid were not brought to agree, and the fluid's added mass outweighs the solid.
+
+    Smaller steps do not change that: the added mass stays while the solid's stiffness counts less and less.
+
+    Attributes
+    ----------
+    gain : float
+        How many times the loop of fluid and solid answered a displacement by the opposite one; above 1.
+    residual : float
+        The smallest that was reached, as a multiple of its tolerance.
+    """
+
+    def __init__(
+        self, message: str, reason: str = "", where: str = "", gain: float = 1.0, residual: float = 1.0
+    ) -> None:
+        super().__init__(message, reason, where)
+        self.gain = gain
+        self.residual = residual
 
 
 class MeshMotionError(ConvergenceError):

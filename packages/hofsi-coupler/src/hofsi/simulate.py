@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hofsi import case
 from hofsi.build import Problem
-from hofsi.errors import ConvergenceError
+from hofsi.errors import AddedMassError, ConvergenceError
 from hofsi.fem.nodal_weights import nodal_weights
 from hofsi.records import CouplingRecord, Rejection, RunMemory, State, StepRecord
 from hofsi.threads import one_thread
@@ -21,6 +21,7 @@ __all__ = ["simulate"]
 
 Array = NDArray[np.float64]
 
+_SAME_GAIN = 0.9  # of the gain with twice the step, which differs a little from step to step
 _STEPS = 4  # step sizes remembered, for multi-step schemes and predictors
 
 
@@ -65,6 +66,7 @@ def simulate(problem: Problem, after: StepRecord | None = None) -> Iterator[Step
             control = _resumed(problem, times, after, errors)
         state, sizes, number = after.state, [] if after.memory is None else list(after.memory.sizes), after.step + 1
     rejected: list[Rejection] = []
+    last: ConvergenceError | None = None
     while not control.finished:
         time, size = control.time, control.size
         steps = [size, *sizes][:_STEPS]
@@ -73,6 +75,9 @@ def simulate(problem: Problem, after: StepRecord | None = None) -> Iterator[Step
                 new, coupling = problem.march.step(state, steps, time)
                 error = None if errors is None else errors.estimate(_fields(new), steps)
         except ConvergenceError as failure:
+            if _is_worse(failure, last):
+                raise _got_worse(failure, size) from failure
+            last = failure
             if control.halve(failed=True):
                 rejected.append(Rejection(size, type(failure).__name__, str(failure)))
                 continue
@@ -84,7 +89,7 @@ def simulate(problem: Problem, after: StepRecord | None = None) -> Iterator[Step
             errors.keep(_fields(new))
         record = _record(number, time, size, new, coupling, control.done, error, tuple(rejected))
         control.advance(error)
-        state, sizes, rejected, number = new, steps, [], number + 1
+        state, sizes, rejected, last, number = new, steps, [], None, number + 1
         kept = None if errors is None else errors.memory()
         yield replace(record, memory=RunMemory(tuple(sizes), control.memory(), kept, problem.march.memory()))
 
@@ -114,14 +119,26 @@ def _record(
     return StepRecord(number, time, dt, state, coupling, bound, done, error, rejected)
 
 
+def _is_worse(failure: ConvergenceError, last: ConvergenceError | None) -> bool:
+    """Whether a step failed for the added mass, as the one of twice its size did before, and came no further."""
+    if not isinstance(failure, AddedMassError) or not isinstance(last, AddedMassError):
+        return False
+    no_nearer = failure.residual >= last.residual or failure.reason == last.reason == "diverged"
+    return no_nearer and failure.gain >= _SAME_GAIN * last.gain
+
+
+def _got_worse(failure: ConvergenceError, size: float) -> ConvergenceError:
+    """The error of a step that half the size did not help."""
+    return failure.extended(f"Half of the step, {size:.6g}, came no further than the whole; it is not halved again.")
+
+
 def _given_up(failure: ConvergenceError, size: float, times: case.Unsteady) -> ConvergenceError:
     """The error of the smallest step."""
     if not times.halvings:
         return failure
-    problem = (
-        f"{failure.problem} That was the smallest step, {size:.6g}: dt, halved time.halvings = {times.halvings} times."
+    return failure.extended(
+        f"That was the smallest step, {size:.6g}: dt, halved time.halvings = {times.halvings} times."
     )
-    return type(failure)(problem, failure.reason, failure.where)
 
 
 def _local_errors(problem: Problem) -> LocalErrors:

@@ -82,26 +82,27 @@ class CouplingSettings:
 
     Attributes
     ----------
-    acceleration : {"iqn-ils", "aitken", "constant"}
+    acceleration : {"iqn-ils", "imvj", "aitken", "constant"}
     geometry : {"extrapolated", "implicit"}
         "implicit" makes a new mesh in every coupling iteration.
     predictor : int
         Order of extrapolation of the interface displacement, 0 to 3.
-    tolerance : float
+    tolerance, force_tolerance : float
         Of displacement and force, relative to the step's increment.
     max_iterations : int
     reuse : int
-        Steps whose secants IQN-ILS keeps.
+        Steps whose secants IQN-ILS keeps; steps after which IMVJ compresses its Jacobian.
     filter : float
-        Of the QR decomposition of the secants; 0 keeps all of them.
+        Of the QR decomposition of the secants, and of the singular values of IMVJ's Jacobian; 0 keeps all of them.
     relaxation : float
         First relaxation factor, in (0, 1].
     """
 
-    acceleration: Literal["iqn-ils", "aitken", "constant"] = "iqn-ils"
+    acceleration: Literal["iqn-ils", "imvj", "aitken", "constant"] = "iqn-ils"
     geometry: Literal["extrapolated", "implicit"] = "extrapolated"
     predictor: int = 2
     tolerance: float = 1e-6
+    force_tolerance: float = 1e-4
     max_iterations: int = 50
     reuse: int = 10
     filter: float = 1e-3

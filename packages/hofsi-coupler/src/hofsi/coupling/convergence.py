@@ -42,10 +42,12 @@ class ConvergenceTest:
     Parameters
     ----------
     tolerance : float
+        Of the displacement.
+    force_tolerance : float
     """
 
-    def __init__(self, tolerance: float) -> None:
-        self.tolerance = tolerance
+    def __init__(self, tolerance: float, force_tolerance: float) -> None:
+        self.tolerance, self.force_tolerance = tolerance, force_tolerance
         self._largest_d = self._largest_f = 0.0
         self._d_n: Array | float = 0.0
         self._f_n: Array | float = 0.0
@@ -65,6 +67,10 @@ class ConvergenceTest:
         """Set the values at the beginning of the step."""
         self._d_n, self._f_n, self._last, self._ratio = displacement, force, None, 0.0
 
+    def excess(self, residuals: Residuals) -> float:
+        """The larger of the two as a multiple of its tolerance; at most 1 when both are met."""
+        return max(residuals.displacement / self.tolerance, residuals.force / self.force_tolerance)
+
     def residuals(self, image: Array, residual: Array, force: Array) -> Residuals:
         """Residuals of an iteration with the image d̃, the residual d̃ - d and the interface force."""
         norm = np.linalg.norm
@@ -83,7 +89,7 @@ class ConvergenceTest:
     def confirms(self, force: Array, exact: Array) -> bool:
         """Whether a force that the displacement was computed from is that of the fields, within the tolerance."""
         loaded = max(float(np.linalg.norm(exact - self._f_n)), _FLOOR * self._largest_f)
-        return bool(np.linalg.norm(exact - force) <= self.tolerance * loaded)
+        return bool(np.linalg.norm(exact - force) <= min(self.tolerance, self.force_tolerance) * loaded)
 
     def _change(self, force: Array, off: float) -> float:
         """How much the force will change in the next iteration after one with a residual of norm ``off``."""

@@ -12,10 +12,12 @@ from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.coupled_memory import CoupledMemory
+from hofsi.coupling.failure import coupling_failure
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
 from hofsi.coupling.relaxation import Accelerator
+from hofsi.coupling.stall import StallWatch, Verdict
 from hofsi.errors import ConvergenceError, CouplingError
 from hofsi.motion import MeshMotion, MeshState
 from hofsi.records import CouplingRecord, State
@@ -30,7 +32,7 @@ __all__ = ["CoupledMarch"]
 _HISTORY = 6  # interface displacements kept: a cubic predictor needs four, and all that a start needs to fade
 _SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
 _NEWTON = 2  # Newton iterations of the fluid in one coupling iteration
-_NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers
+_STEADY = "steady coupling"
 _INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
 
 
@@ -94,7 +96,7 @@ class CoupledMarch:
         self._fluid, self._solid, self._interface, self._motion = fluid, solid, interface, motion
         self._prescribed, self._settings = prescribed, settings
         self._accelerator, self._clock = accelerator, clock
-        self._test = ConvergenceTest(settings.tolerance)
+        self._test = ConvergenceTest(settings.tolerance, settings.force_tolerance)
         self._rows = np.searchsorted(motion.driven.nodes, interface.fluid)
         held = np.logical_and.reduce(solid.supports.constraints.fixed[interface.solid], axis=1)
         self._load = InterfaceLoad(fluid, interface, held)
@@ -208,10 +210,10 @@ class CoupledMarch:
             except ConvergenceError as error:
                 part *= 0.5
                 if part < _SMALLEST_PART:
-                    raise type(error)(
-                        f"{error.problem} Applied little by little, {done:.3g} of the fluid's load was reached.",
-                        error.reason,
-                        error.where,
+                    raise error.extended(
+                        f"Applied little by little, {done:.3g} of the fluid's load was reached: there may be no steady "
+                        "state near the start, as of a solid that buckles or is too soft for the flow. Lower the load, "
+                        "stiffen the solid, give an initial_displacement nearer to the state, or march in time."
                     ) from error
                 continue
             if reached == 1.0:
@@ -237,7 +239,7 @@ class CoupledMarch:
             return self._flow(step, moved, at_rest)
 
         self._test.begin_step(0.0, 0.0)
-        return self._iterate(displacement[self._interface.solid], flow, solid_step, "steady coupling", share)
+        return self._iterate(displacement[self._interface.solid], flow, solid_step, _STEADY, share)
 
     def _flow(self, step: FluidStep, mesh: MeshState, velocity: Array, max_iterations: int | None = None) -> _Flow:
         """The flow of a step for a velocity of the interface: solved for, or the step's response to it."""
@@ -284,7 +286,8 @@ class CoupledMarch:
         self._believing = True
         inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
         displacement: Array | None = None
-        residuals = Residuals(np.inf, np.inf)
+        residuals, watch = Residuals(np.inf, np.inf), StallWatch()
+        verdict: Verdict = ""
         for iteration in range(1, settings.max_iterations + 1):
             now = flow(d)
             force = now.force
@@ -295,7 +298,8 @@ class CoupledMarch:
             if not (np.isfinite(residual).all() and np.isfinite(force).all()):
                 raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
             residuals = self._test.residuals(image, residual, force)
-            if now.converged and residuals.largest <= settings.tolerance:
+            excess = self._test.excess(residuals)
+            if now.converged and excess <= 1.0:
                 fluid, moved = now.finish()
                 self._believing = self._test.confirms(force, self._load.evaluate(fluid))
                 if self._believing:
@@ -303,24 +307,12 @@ class CoupledMarch:
                     record = CouplingRecord(iteration, residuals.displacement, residuals.force)
                     mesh = replace(moved, regenerated=self._regenerated)
                     return _Fields(fluid, mesh, solid_step, displacement), record
+            verdict = watch.observe(image, residual, excess)
+            if verdict:
+                break
             with self._clock.phase("coupling"):
                 d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
-        raise CouplingError(
-            f"not converged after {settings.max_iterations} iterations: displacement residual "
-            f"{residuals.displacement:.2g}, force residual {residuals.force:.2g}, expected below "
-            f"{settings.tolerance:g}. {self._way_out(residuals)}",
-            "max_iterations",
-            where,
-        )
-
-    def _way_out(self, residuals: Residuals) -> str:
-        settings = self._settings
-        if residuals.largest < _NEARLY:
-            return "That is close to rounding: raise coupling.tolerance."
-        ways = "Lower time.dt, or the load of a steady case, or raise coupling.max_iterations"
-        if settings.acceleration != "iqn-ils":
-            ways += ', or set coupling.acceleration = "iqn-ils"'
-        return f"{ways}."
+        raise coupling_failure(verdict, residuals, self._test, watch, settings, where, steady=where == _STEADY)
 
     def _nodal(self, force: Array) -> Array:
         nodal = np.zeros(self._solid.mesh.points.shape)

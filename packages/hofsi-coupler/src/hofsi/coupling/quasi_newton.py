@@ -7,12 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hofsi.coupling.secants import Secants
+
 Array = NDArray[np.float64]
 
 __all__ = ["InverseLeastSquares", "SecantMemory"]
 
 
 _OLDEST = 60  # ages beyond it count as this one: their columns have no weight any more
+
+_CARE = 0.1  # what a failure leaves of the first relaxation factor
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,78 +55,64 @@ class InverseLeastSquares:
     filter : float
         A column whose part orthogonal to the newer ones of its step is below this fraction of it is dropped for good.
     relaxation : float
-        Factor of the residual while there are no columns.
+        Factor of the residual while there are no columns; a tenth of it after each failure until a step converges: a
+        first iterate that is far off can be more than the solid bears.
 
     References
     ----------
     Degroote, Bathe, Vierendeels, Comput. Struct. 87 (2009) 793–801, doi:10.1016/j.compstruc.2008.11.013;
-    Haelterman, Bogaers, Scheufele, Uekermann, Mehl, Comput. Struct. 171 (2016) 9–17 (QR2),
-    doi:10.1016/j.compstruc.2016.04.001.
+    the filter: `Secants`.
     """
 
     def __init__(self, reuse: int, filter: float, relaxation: float) -> None:
         self._reuse, self._filter, self._relaxation = reuse, filter, relaxation
         self._steps: list[list[tuple[Array, Array]]] = []  # newest step first, newest column first
-        self._current: list[tuple[Array, Array]] = []
-        self._last: tuple[Array, Array] | None = None
-        self.dropped = 0
+        self._secants = Secants(filter)
+        self._care = 1.0  # factor of the relaxation: smaller after failures
 
     @property
     def columns(self) -> int:
         """Number of columns in use."""
-        return len(self._current) + sum(len(step) for step in self._steps)
+        return len(self._secants.columns) + sum(len(step) for step in self._steps)
+
+    @property
+    def dropped(self) -> int:
+        """Number of columns dropped so far."""
+        return self._secants.dropped
 
     def begin_step(self) -> None:
         """Start a step without columns of its own."""
-        self._current, self._last = [], None
+        self._secants.begin_step()
 
     def next(self, d: Array, residual: Array) -> Array:
         """Return the next iterate after ``d`` with the residual d̃ - d."""
         image = d + residual
-        if self._last is not None:
-            self._add(residual - self._last[0], image - self._last[1])
-        self._last = residual.copy(), image
-        steps = [self._current, *self._steps]
+        self._secants.add(residual, image)
+        steps = [self._secants.columns, *self._steps]
         columns = [column for step in steps for column in step]
         if not columns:
-            return d + self._relaxation * residual
+            return d + self._care * self._relaxation * residual
         V, W = (np.stack(part, axis=1) for part in zip(*columns, strict=True))
         weights = [self._weight(age) for age, step in enumerate(steps) for _ in step]
         system = np.concatenate([V, np.diag(weights)])
         c = np.linalg.lstsq(system, np.concatenate([-residual, np.zeros(len(columns))]))[0]
-        return np.asarray(image + W @ c)
+        unexplained = residual + V @ c
+        return np.asarray(image + W @ c - (1.0 - self._care) * unexplained)
 
     def _weight(self, age: int) -> float:
         return float(np.ldexp(self._filter, min(age, _OLDEST) + 1)) if age else 0.0
 
-    def _add(self, v: Array, w: Array) -> None:
-        """Add a column, and drop those that newer ones of the step make superfluous."""
-        length = np.linalg.norm(v)
-        if length == 0.0:
-            return
-        self._current.insert(0, (v / length, w / length))
-        keep = self._independent(np.stack([v for v, _ in self._current], axis=1))
-        self._current = [column for column, stays in zip(self._current, keep, strict=True) if stays]
-        self.dropped += int((~keep).sum())
-
-    def _independent(self, V: Array) -> NDArray[np.bool_]:
-        """Columns that are independent enough of newer ones; at most as many as there are rows."""
-        keep: NDArray[np.bool_] = np.arange(V.shape[1]) < V.shape[0]
-        while True:
-            kept = np.flatnonzero(keep)
-            weak = kept[np.abs(np.diag(np.linalg.qr(V[:, kept], mode="r"))) < self._filter]
-            if not weak.size:
-                return keep
-            keep[weak[0]] = False  # the newest of them; those behind it may stand without it
-
     def forget(self) -> None:
         """Drop all columns."""
-        self._steps, self._current, self._last = [], [], None
+        self._care *= _CARE
+        self._steps = []
+        self._secants.begin_step()
 
     def end_step(self) -> None:
         """Keep the step's columns and forget the oldest step."""
-        self._steps = [self._current, *self._steps][: self._reuse]
-        self._current = []
+        self._care = 1.0
+        self._steps = [self._secants.columns, *self._steps][: self._reuse]
+        self._secants.begin_step()
 
     def memory(self) -> SecantMemory:
         """The columns of earlier steps."""
@@ -130,7 +120,8 @@ class InverseLeastSquares:
 
     def recall(self, memory: object) -> None:
         """Go on with the columns of earlier steps."""
-        self.forget()
+        self._steps, self._care = [], 1.0
+        self._secants.begin_step()
         if isinstance(memory, SecantMemory):
             self._steps = [list(step) for step in memory.steps][: self._reuse]
-            self.dropped = memory.dropped
+            self._secants.dropped = memory.dropped

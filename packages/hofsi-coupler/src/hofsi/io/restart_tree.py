@@ -28,6 +28,7 @@ _MODULES = {
     "FactorsMemory": "hofsi.solvers.fluid_factors",
     "FluidMemory": "hofsi.solvers.fluid_memory",
     "FluidState": "hofsi.solvers.fluid_state",
+    "JacobianMemory": "hofsi.coupling.multi_vector",
     "MatrixOrigin": "hofsi.solvers.fluid_matrices",
     "MeshPosition": "hofsi.motion",
     "Rejection": "hofsi.records",

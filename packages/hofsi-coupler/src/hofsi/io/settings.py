@@ -119,10 +119,11 @@ def read_coupling(table: Table, time: TimeSettings) -> CouplingSettings:
     """Read ``[coupling]``; the geometry of a steady case is implicit unless something else is given."""
     default = CouplingSettings(geometry="implicit" if isinstance(time, Steady) else "extrapolated")
     settings = CouplingSettings(
-        acceleration=choice(table, "acceleration", ("iqn-ils", "aitken", "constant"), default.acceleration),
+        acceleration=choice(table, "acceleration", ("iqn-ils", "imvj", "aitken", "constant"), default.acceleration),
         geometry=choice(table, "geometry", ("extrapolated", "implicit"), default.geometry),
         predictor=table.integer("predictor", default.predictor, minimum=0, maximum=3),
         tolerance=_tolerance(table, default.tolerance),
+        force_tolerance=table.number("force_tolerance", default.force_tolerance, above=0.0, below=1.0),
         max_iterations=table.integer("max_iterations", default.max_iterations, minimum=1),
         reuse=table.integer("reuse", default.reuse, minimum=0),
         filter=table.number("filter", default.filter, minimum=0.0, below=1.0),

@@ -33,7 +33,12 @@ _MOVERS = {
     AngleOptimisationSettings: "angle optimisation",
     RuleSettings: "rule",
 }
-_ACCELERATIONS = {"iqn-ils": "IQN-ILS", "aitken": "Aitken's relaxation", "constant": "constant relaxation"}
+_ACCELERATIONS = {
+    "iqn-ils": "IQN-ILS",
+    "imvj": "IMVJ",
+    "aitken": "Aitken's relaxation",
+    "constant": "constant relaxation",
+}
 
 
 def _mover(case: Case, structure: BlockStructure, mesh: QuadMesh, edges: Index) -> str:
@@ -63,7 +68,7 @@ def coupling_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     yield Item(
         "coupling",
         f"{_ACCELERATIONS[settings.acceleration]} to {settings.tolerance:g} in displacement and "
-        f"force, at most {settings.max_iterations} iterations",
+        f"{settings.force_tolerance:g} in force, at most {settings.max_iterations} iterations",
     )
     if isinstance(case.time, Steady) or settings.geometry == "implicit":
         yield Item("geometry", "implicit: a new fluid mesh in every coupling iteration")

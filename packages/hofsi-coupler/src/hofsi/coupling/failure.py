@@ -1,0 +1,85 @@
+"""What is said of a coupled step that did not converge."""
+
+from __future__ import annotations
+
+from hofsi.case import CouplingSettings
+from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.stall import StallWatch, Verdict
+from hofsi.errors import AddedMassError, CouplingError
+
+__all__ = ["coupling_failure"]
+
+_NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers
+_HEAVY = 1.0  # gain above which plain iteration diverges
+
+
+def coupling_failure(
+    verdict: Verdict,
+    residuals: Residuals,
+    test: ConvergenceTest,
+    watch: StallWatch,
+    settings: CouplingSettings,
+    where: str,
+    *,
+    steady: bool,
+) -> CouplingError:
+    """Return the error of a step that has used up its iterations, has stalled or diverges.
+
+    Parameters
+    ----------
+    verdict : {"", "stalled", "diverging"}
+        "" for a step that has used up its iterations.
+    residuals : Residuals
+        The last ones.
+    test : ConvergenceTest
+    watch : StallWatch
+    settings : CouplingSettings
+    where : str
+    steady : bool
+    """
+    problem = f"{_happened(verdict, watch)}: {_left(residuals, test)}."
+    reason = {"": "max_iterations", "stalled": "stalled", "diverging": "diverged"}[verdict]
+    if residuals.largest < _NEARLY:
+        way = (
+            "That is close to the noise of the solvers: raise coupling.tolerance or coupling.force_tolerance, or lower "
+            "nonlinear.tolerance."
+        )
+        return CouplingError(f"{problem} {way}", reason, where)
+    more = _more(verdict, settings)
+    if steady:
+        way = _choice([*more, "lower the load", "start nearer to the solution"])
+        return CouplingError(f"{problem} {way}", reason, where)
+    if watch.gain <= _HEAVY:
+        return CouplingError(f"{problem} {_choice(['lower time.dt', *more])}", reason, where)
+    added = (
+        f"The fluid answers a displacement of the solid by {watch.gain:.2g} times the opposite one: its added mass "
+        "dominates a light solid, and smaller steps do not change that"
+    )
+    way = _choice([*more, "make the solid heavier or stiffer", "let loads begin less suddenly"])
+    return AddedMassError(f"{problem} {added}. {way}", reason, where, gain=watch.gain, residual=watch.best)
+
+
+def _happened(verdict: Verdict, watch: StallWatch) -> str:
+    if verdict == "diverging":
+        return f"diverging: in {watch.iterations} iterations the residual has grown by a factor of {watch.growth:.1g}"
+    if verdict == "stalled":
+        return f"stalled after {watch.iterations} iterations, the last 20 without progress"
+    return f"not converged after {watch.iterations} iterations"
+
+
+def _left(residuals: Residuals, test: ConvergenceTest) -> str:
+    return (
+        f"displacement residual {residuals.displacement:.2g}, expected below {test.tolerance:g}, force residual "
+        f"{residuals.force:.2g}, expected below {test.force_tolerance:g}"
+    )
+
+
+def _more(verdict: Verdict, settings: CouplingSettings) -> list[str]:
+    """Settings that may help."""
+    ways = [] if settings.acceleration in ("iqn-ils", "imvj") else ['set coupling.acceleration = "iqn-ils"']
+    return ways if verdict else [*ways, "raise coupling.max_iterations"]
+
+
+def _choice(ways: list[str]) -> str:
+    text = ", or ".join(ways)
+    return f"{text[0].upper()}{text[1:]}."

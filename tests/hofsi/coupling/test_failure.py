@@ -1,0 +1,75 @@
+"""What a coupled step that did not converge says."""
+
+import numpy as np
+import pytest
+
+from hofsi.case import CouplingSettings
+from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.failure import coupling_failure
+from hofsi.coupling.stall import StallWatch
+from hofsi.errors import AddedMassError, CouplingError
+
+TEST = ConvergenceTest(1e-6, 1e-4)
+
+
+def watch_of(gain):
+    watch = StallWatch()
+    for k in range(3):
+        d, image = np.full((2, 2), float(k)), np.full((2, 2), -gain * k)
+        watch.observe(image, image - d, 30.0)
+    return watch
+
+
+def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils", steady=False):
+    settings = CouplingSettings(acceleration=acceleration)
+    return coupling_failure(verdict, Residuals(*residuals), TEST, watch_of(gain), settings, "here", steady=steady)
+
+
+@pytest.mark.parametrize(
+    ("options", "reason", "expected"),
+    [
+        (
+            {},
+            "max_iterations",
+            r"here: not converged after 3 iterations: displacement residual 0.002, expected below 1e-06",
+        ),
+        ({}, "max_iterations", r"force residual 0.4, expected below 0.0001. Lower time.dt, or raise coupling.max_iter"),
+        ({"verdict": "stalled"}, "stalled", r"stalled after 3 iterations, the last 20 without progress: .*time.dt\.$"),
+        ({"verdict": "diverging"}, "diverged", r"diverging: in 3 iterations the residual has grown by a factor of"),
+        (
+            {"residuals": (1e-8, 2e-6)},
+            "max_iterations",
+            r"noise of the solvers: raise coupling.tolerance or coupling.for",
+        ),
+        (
+            {"acceleration": "aitken"},
+            "max_iterations",
+            r'Lower time.dt, or set coupling.acceleration = "iqn-ils", or raise',
+        ),
+        (
+            {"steady": True, "gain": 3.0},
+            "max_iterations",
+            r"Raise coupling.max_iterations, or lower the load, or start nearer to the solution\.$",
+        ),
+        (
+            {"gain": 3.0},
+            "max_iterations",
+            r"by 3 times the opposite one: its added mass .* Raise .*, or make the solid heavier",
+        ),
+    ],
+)
+def test_message(options, reason, expected):
+    error = failure(**options)
+    assert error.reason == reason
+    with pytest.raises(CouplingError, match=expected):
+        raise error
+
+
+def test_the_added_mass_is_an_error_of_its_own():
+    error = failure(gain=3.0)
+    assert isinstance(error, AddedMassError)
+    assert (error.gain, error.residual) == (pytest.approx(3.0), 30.0)
+    assert not isinstance(failure(gain=0.9), AddedMassError)
+    assert not isinstance(failure(gain=3.0, steady=True), AddedMassError)
+    longer = error.extended("And more.")
+    assert (longer.gain, longer.reason, str(longer)) == (error.gain, error.reason, f"{error} And more.")

@@ -1,0 +1,74 @@
+"""A pressure pulse between elastic walls, from dense walls to light ones, with every accelerator."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hofsi import build, evaluators, load_case, simulate
+
+pytestmark = [pytest.mark.verification, pytest.mark.slow]
+
+SCENE = Path(__file__).parents[2] / "examples" / "pressure_pulse.toml"
+
+
+class Pulse:
+    """Series of the quantities and coupling iterations of a run."""
+
+    def __init__(self, *changes):
+        problem = build(load_case(SCENE, changes))
+        read = evaluators(problem)
+        self.times, self.iterations, rows = [], [], []
+        for record in simulate(problem):
+            self.times.append(record.time)
+            self.iterations.append(record.coupling.iterations)
+            rows.append([evaluate(record) for evaluate in read.values()])
+        self.series = dict(zip(read, np.array(rows).T, strict=True))
+
+    @property
+    def mean(self):
+        """Mean coupling iterations a step."""
+        return float(np.mean(self.iterations))
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return Pulse()
+
+
+def test_the_pulse_crosses_the_channel_in_few_iterations(whole):
+    assert len(whole.iterations) == 150  # none was divided
+    assert whole.mean <= 10.0
+    assert whole.series["outflow"][-1] > 30.0
+
+
+def test_the_pulse_travels_with_the_speed_of_a_wall_on_springs(whole):
+    """Between x = 1 and x = 3; long waves have sqrt(k R/ρ) = 434 cm/s, short ones are slower."""
+    peaks = [whole.times[int(np.argmax(whole.series[name]))] for name in ("wall_1", "wall_3")]
+    assert 300.0 < 2.0 / (peaks[1] - peaks[0]) < 440.0
+
+
+@pytest.mark.parametrize("acceleration", ["iqn-ils", "imvj"])
+@pytest.mark.parametrize(("density", "most"), [(10.0, 9.0), (1.1, 12.0)])
+def test_walls_as_dense_as_the_fluid_take_little_more(density, most, acceleration):
+    found = Pulse(f"solid[0].density={density}", f"coupling.acceleration={acceleration}", "time.end=0.003")
+    assert len(found.iterations) == 30
+    assert found.mean <= most
+
+
+def test_light_walls_are_begun_with_care():
+    """At a tenth of the fluid's density the first iterate crushes the walls; the second attempt begins nearer."""
+    found = Pulse("solid[0].density=0.1", "coupling.acceleration=iqn-ils", "time.end=0.0015")
+    assert 15 <= len(found.iterations) <= 18
+    assert found.mean <= 25.0
+
+
+@pytest.mark.parametrize("geometry", ["extrapolated", "implicit"])
+def test_accelerators_agree(geometry):
+    common = [f"coupling.geometry={geometry}", "time.end=0.001"]
+    reference = Pulse(*common, "coupling.tolerance=1e-7", "coupling.force_tolerance=1e-6")
+    others = {"iqn-ils": [], "imvj": [], "aitken": ["coupling.max_iterations=400", "coupling.relaxation=0.1"]}
+    for kind, more in others.items():
+        found = Pulse(*common, f"coupling.acceleration={kind}", *more)
+        for name, scale in (("wall_1", reference.series["wall_1"].max()), ("pressure", 2e4)):
+            np.testing.assert_allclose(found.series[name], reference.series[name], rtol=0.0, atol=1e-6 * scale)
