@@ -252,7 +252,7 @@ def test_after_a_step_that_was_divided_a_run_goes_on_to_the_bit(flap: str, scene
     changes = [*TABLES_ONLY, "time.end=0.3", "coupling.max_iterations=12"]
     assert run(text, tmp_path / "whole", changes) == 0
     steps = rows(tmp_path / "whole" / "steps.csv")
-    assert [(row["dt"], row["rejected_because"]) for row in steps[2:]] == [("0.05", "CouplingError"), ("0.05", "")]
+    assert [(row["dt"], row["rejected_because"]) for row in steps[2:]] == [("0.05", "AddedMassError"), ("0.05", "")]
     assert killed(4, "SIGTERM", text, tmp_path / "parts", changes).returncode == 143
     assert run(text, tmp_path / "parts", changes, "--resume") == 0
     (tmp_path / "parts" / "restart.npz").unlink()

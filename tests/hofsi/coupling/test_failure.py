@@ -5,9 +5,9 @@ import pytest
 
 from hofsi.case import CouplingSettings
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
-from hofsi.coupling.failure import coupling_failure
+from hofsi.coupling.failure import coupling_failure, solid_failure
 from hofsi.coupling.stall import StallWatch
-from hofsi.errors import AddedMassError, CouplingError
+from hofsi.errors import AddedMassError, CouplingError, NewtonError
 
 TEST = ConvergenceTest(1e-6, 1e-4)
 
@@ -36,6 +36,11 @@ def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils",
         ({}, "max_iterations", r"force residual 0.4, expected below 0.0001. Lower time.dt, or raise coupling.max_iter"),
         ({"verdict": "stalled"}, "stalled", r"stalled after 3 iterations, the last 20 without progress: .*time.dt\.$"),
         ({"verdict": "diverging"}, "diverged", r"diverging: in 3 iterations the residual has grown by a factor of"),
+        (
+            {"residuals": (3e-8, 3e-4), "gain": 18.0, "verdict": "stalled"},
+            "stalled",
+            r"close to the noise of the solvers: raise coupling\.tolerance",
+        ),
         (
             {"residuals": (1e-8, 2e-6)},
             "max_iterations",
@@ -73,3 +78,15 @@ def test_the_added_mass_is_an_error_of_its_own():
     assert not isinstance(failure(gain=3.0, steady=True), AddedMassError)
     longer = error.extended("And more.")
     assert (longer.gain, longer.reason, str(longer)) == (error.gain, error.reason, f"{error} And more.")
+
+
+def test_solids_that_fail_under_the_iterates_of_a_heavy_fluid_are_not_blamed():
+    error = NewtonError("Newton's method stopped.", "max_iterations", "solid, t = 1")
+    assert solid_failure(error, watch_of(0.5), "here") is error
+    found = solid_failure(error, watch_of(3.0), "here")
+    assert isinstance(found, AddedMassError)
+    assert (found.gain, found.reason) == (pytest.approx(3.0), "diverged")
+    with pytest.raises(
+        AddedMassError, match=r"here: diverging: after 3 iterations the solids bear .*Newton.*added mass"
+    ):
+        raise found

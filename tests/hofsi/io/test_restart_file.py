@@ -229,7 +229,7 @@ def damaged(path: Path, place: float) -> None:
     path.write_bytes(data)
 
 
-@pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.95])
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.9, 0.95, 0.98])
 def test_a_damaged_file(written: Path, place: float) -> None:
     damaged(written, place)
     with pytest.raises(RestartError, match=r"restart\.npz: is not a restart file of hofsi, or is damaged"):

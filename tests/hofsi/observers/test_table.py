@@ -64,7 +64,7 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         mesh: Any = SimpleNamespace(regenerated=7, substeps=2, amplification=6.25, snapped=True)
         rejected = (Rejection(0.4, "NewtonError", "."), Rejection(0.2, "NewtonError", "."))
         others = {"local_error": 1e-5, "rejected": rejected if step == 2 else ()}
-        coupling = CouplingRecord(4, 1e-7, 2e-8)
+        coupling = CouplingRecord(4, 1e-7, 2e-8, 0.5, 0.25, 1e-3)
         table.observe(record(step, state=State(mesh=mesh), coupling=coupling, min_det_J=0.25, **others))
     table.close()
     assert (table.steps, table.coupling_iterations, table.blocks_regenerated) == (2, 8, 14)
@@ -78,6 +78,9 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         "coupling_iterations": "4",
         "displacement_residual": "1e-07",
         "force_residual": "2e-08",
+        "interface_work_fluid": "0.5",
+        "interface_work_solid": "0.25",
+        "interface_mass_flux": "0.001",
         "min_det_J": "0.25",
         "blocks_regenerated": "7",
         "mesh_substeps": "2",
@@ -87,6 +90,11 @@ def test_steps_tell_how_coupling_went(tmp_path: Path) -> None:
         "assemblies": "2",
         "preconditioners": "1",
         "linear_iterations": "34",
+        "kinetic_energy": "",
+        "strain_energy": "",
+        "dissipation": "",
+        "power": "",
+        "energy_defect": "",
         "local_error": "1e-05",
         "rejected": "2",
         "rejected_because": "NewtonError",
@@ -100,7 +108,10 @@ def test_what_a_problem_does_not_have_stays_empty(tmp_path: Path) -> None:
     table.close()
     (written,) = lines(tmp_path / "steps.csv")
     empty = [name for name, cell in written.items() if not cell]
-    assert empty == [*STEP_COLUMNS[3:10], "factorised_because", "local_error", "rejected_because"]
+    coupled, energies = STEP_COLUMNS[3:13], STEP_COLUMNS[-9:-4]
+    assert (coupled[0], coupled[-1]) == ("coupling_iterations", "mesh_amplification")
+    assert (energies[0], energies[-1]) == ("kinetic_energy", "energy_defect")
+    assert empty == [*coupled, "factorised_because", *energies, "local_error", "rejected_because"]
     assert (table.coupling_iterations, table.blocks_regenerated) == (0, 0)
 
 
@@ -116,3 +127,22 @@ def test_blocks_of_a_mesh_that_stays_are_counted_once(tmp_path: Path) -> None:
 def test_a_folder_that_does_not_exist_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         StepTable(tmp_path / "nowhere" / "steps.csv", {})
+
+
+def test_energies_follow_every_step_and_the_one_that_a_run_goes_on_after(tmp_path: Path) -> None:
+    followed: list[int] = []
+
+    def energies(of: StepRecord) -> tuple[float, ...]:
+        followed.append(of.step)
+        return 1.0, 2.0, 3.0, 4.0, float(of.step)
+
+    table = StepTable(tmp_path / "steps.csv", {}, energies=energies)
+    table.observe(record(1))
+    memory = table.memory()
+    table.close()
+    again = StepTable(tmp_path / "steps.csv", {}, kept=memory["size"], energies=energies)
+    again.recall(memory, record(1))
+    again.observe(record(2))
+    again.close()
+    assert followed == [1, 1, 2]
+    assert [line["energy_defect"] for line in lines(tmp_path / "steps.csv")] == ["1.0", "2.0"]

@@ -40,11 +40,28 @@ class State:
 
 @dataclass(frozen=True)
 class CouplingRecord:
-    """How a coupled step converged: iterations and the last residuals, relative to the step's increments."""
+    """How a coupled step converged, and what passed its interface.
+
+    Attributes
+    ----------
+    iterations : int
+    displacement, force : float
+        Last residuals, relative to the step's increments.
+    work_fluid, work_solid : float or None
+        Work of the fluid on the solids in the step, by the trapezoidal rule in the nodal forces: with the velocity of
+        the fluid at the interface, and with the displacement of the solids. They differ by what the time schemes leave.
+        None without a step.
+    mass_flux : float or None
+        ∫ ρ (u - w)·n over the interface at the end of the step: what flows through it, because the fluid's mesh stands
+        where the interface was expected (geometry = "extrapolated"); rounding if it stands where the interface is.
+    """
 
     iterations: int
     displacement: float
     force: float
+    work_fluid: float | None = None
+    work_solid: float | None = None
+    mass_flux: float | None = None
 
 
 @dataclass(frozen=True)

@@ -109,7 +109,12 @@ class Report:
         self._last: StepRecord | None = None
         self._quality = MeshQuality(None if problem.fluid is not None or problem.solid is None else problem.solid.mesh)
         self._quantities = QuantityTable(folder / "quantities.csv", read, sizes["quantities"])
-        self._steps = StepTable(folder / "steps.csv", problem.counts, kept=sizes["steps"])
+        energies = None
+        if output.energy:
+            from hofsi.quantities.energy import EnergyBudget
+
+            energies = EnergyBudget(problem).follow
+        self._steps = StepTable(folder / "steps.csv", problem.counts, kept=sizes["steps"], energies=energies)
         self._notes: list[str] = []
         self._live = None if progress is None else Progress(progress, _step_count(time, start))
         self._observers: dict[str, tuple[str, Observer]] = {}  # with the phase that their time counts for

@@ -147,6 +147,8 @@ class OutputSettings:
         Steps between field files; the last step is always written.
     period_of : str or None
         The quantity whose period defines means, amplitudes and frequencies.
+    energy : bool
+        Whether the energy of every step is balanced.
     checkpoint_every : int or None
         Steps between restart files, each of which takes the place of the last; None for one only if the run is broken
         off.
@@ -157,3 +159,4 @@ class OutputSettings:
     plots: bool = True
     period_of: str | None = None
     checkpoint_every: int | None = None
+    energy: bool = False

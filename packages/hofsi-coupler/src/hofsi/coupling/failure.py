@@ -5,11 +5,12 @@ from __future__ import annotations
 from hofsi.case import CouplingSettings
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.stall import StallWatch, Verdict
-from hofsi.errors import AddedMassError, CouplingError
+from hofsi.errors import AddedMassError, ConvergenceError, CouplingError
 
-__all__ = ["coupling_failure"]
+__all__ = ["coupling_failure", "solid_failure"]
 
-_NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers
+_NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers, ...
+_NEARLY_THERE = 1e-7  # ... and so is everything, whatever the force says, when the displacement is as near as that
 _HEAVY = 1.0  # gain above which plain iteration diverges
 
 
@@ -39,7 +40,7 @@ def coupling_failure(
     """
     problem = f"{_happened(verdict, watch)}: {_left(residuals, test)}."
     reason = {"": "max_iterations", "stalled": "stalled", "diverging": "diverged"}[verdict]
-    if residuals.largest < _NEARLY:
+    if residuals.largest < _NEARLY or residuals.displacement < _NEARLY_THERE:
         way = (
             "That is close to the noise of the solvers: raise coupling.tolerance or coupling.force_tolerance, or lower "
             "nonlinear.tolerance."
@@ -51,11 +52,36 @@ def coupling_failure(
         return CouplingError(f"{problem} {way}", reason, where)
     if watch.gain <= _HEAVY:
         return CouplingError(f"{problem} {_choice(['lower time.dt', *more])}", reason, where)
+    return _added_mass(problem, more, reason, where, watch)
+
+
+def solid_failure(error: ConvergenceError, watch: StallWatch, where: str) -> ConvergenceError:
+    """Return what is said of solids that found no equilibrium under a load of the coupling's iteration.
+
+    If the iterates led there because the fluid's added mass drives them apart, that; otherwise the error itself.
+
+    Parameters
+    ----------
+    error : ConvergenceError
+        Of the solids.
+    watch : StallWatch
+        With all iterations before that.
+    where : str
+    """
+    if watch.gain <= _HEAVY:
+        return error
+    problem = (
+        f"diverging: after {watch.iterations} iterations the solids bear the fluid's load no more ({error.problem})"
+    )
+    return _added_mass(problem, [], "diverged", where, watch)
+
+
+def _added_mass(problem: str, ways: list[str], reason: str, where: str, watch: StallWatch) -> AddedMassError:
     added = (
         f"The fluid answers a displacement of the solid by {watch.gain:.2g} times the opposite one: its added mass "
         "dominates a light solid, and smaller steps do not change that"
     )
-    way = _choice([*more, "make the solid heavier or stiffer", "let loads begin less suddenly"])
+    way = _choice([*ways, "make the solid heavier or stiffer", "let loads begin less suddenly"])
     return AddedMassError(f"{problem} {added}. {way}", reason, where, gain=watch.gain, residual=watch.best)
 
 

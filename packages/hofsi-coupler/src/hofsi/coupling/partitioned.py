@@ -12,8 +12,9 @@ from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.coupled_memory import CoupledMemory
-from hofsi.coupling.failure import coupling_failure
+from hofsi.coupling.failure import coupling_failure, solid_failure
 from hofsi.coupling.interface import Interface
+from hofsi.coupling.interface_balance import InterfaceBalance
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
 from hofsi.coupling.relaxation import Accelerator
@@ -100,6 +101,7 @@ class CoupledMarch:
         self._rows = np.searchsorted(motion.driven.nodes, interface.fluid)
         held = np.logical_and.reduce(solid.supports.constraints.fixed[interface.solid], axis=1)
         self._load = InterfaceLoad(fluid, interface, held)
+        self._balance = InterfaceBalance(fluid, interface, self._load)
         self._regenerated = 0  # blocks, in the meshes of the step at hand
         self._believing = True  # responses of the fluid, until its fields tell another force
 
@@ -174,7 +176,9 @@ class CoupledMarch:
         d = fields.displacement[self._interface.solid]
         with self._clock.phase("solid"):
             accepted = solid_step.accept(fields.displacement)
-        return State(fields.fluid, accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1])), record
+        reached = State(fields.fluid, accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1]))
+        with self._clock.phase("coupling"):
+            return reached, self._balance.completed(record, state, reached, steps[0])
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         """Iterate steady flow and static equilibrium on meshes that fit the current displacement.
@@ -291,8 +295,11 @@ class CoupledMarch:
         for iteration in range(1, settings.max_iterations + 1):
             now = flow(d)
             force = now.force
-            with self._clock.phase("solid"):
-                displacement = solid_step.solve(share * self._nodal(force), displacement, tolerance=inner)
+            try:
+                with self._clock.phase("solid"):
+                    displacement = solid_step.solve(share * self._nodal(force), displacement, tolerance=inner)
+            except ConvergenceError as error:
+                raise solid_failure(error, watch, where) from error
             image = displacement[interface.solid]
             residual = image - d
             if not (np.isfinite(residual).all() and np.isfinite(force).all()):

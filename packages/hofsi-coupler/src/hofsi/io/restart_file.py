@@ -133,6 +133,7 @@ def write_restart(
         "versions": versions(),
         "values": case_values(problem.case),
         "mesh": _digest(problem),
+        "arrays": len(writer.arrays),
     }
     arrays = {f"array_{k}": array for k, array in enumerate(writer.arrays)}
     with replacing(path) as file:
@@ -163,8 +164,7 @@ def read_restart(path: str | os.PathLike[str]) -> RestartFile:
             if head["name"] != _NAME:
                 raise ValueError(f"name {head['name']!r}")
             _check_format(path, head)
-            count = sum(name.startswith("array_") for name in archive.files)
-            arrays = [archive[f"array_{k}"] for k in range(count)]
+            arrays = [archive[f"array_{k}"] for k in range(head["arrays"])]
             content = _read(archive, "content")
             return RestartFile(path, dict(head["values"]), str(head["mesh"]), dict(head["versions"]), content, arrays)
     except _BROKEN as error:

@@ -168,6 +168,7 @@ def read_output(table: Table, quantities: Iterable[str]) -> OutputSettings:
         plots=table.boolean("plots", default.plots),
         period_of=period_of,
         checkpoint_every=table.integer("checkpoint_every", default.checkpoint_every, minimum=1),
+        energy=table.boolean("energy", default.energy),
     )
     table.finish()
     return settings

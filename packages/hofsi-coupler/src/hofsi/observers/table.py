@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import astuple, fields
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from hofsi.counts import Counts
 from hofsi.errors import RestartError
-from hofsi.records import StepRecord
+from hofsi.records import CouplingRecord, StepRecord
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,9 @@ STEP_COLUMNS = (
     "coupling_iterations",
     "displacement_residual",
     "force_residual",
+    "interface_work_fluid",
+    "interface_work_solid",
+    "interface_mass_flux",
     "min_det_J",
     "blocks_regenerated",
     "mesh_substeps",
@@ -36,6 +40,11 @@ STEP_COLUMNS = (
     "assemblies",
     "preconditioners",
     "linear_iterations",
+    "kinetic_energy",
+    "strain_energy",
+    "dissipation",
+    "power",
+    "energy_defect",
     "local_error",
     "rejected",
     "rejected_because",
@@ -178,6 +187,9 @@ class StepTable:
         Seconds; those since the table was opened are written.
     kept : int, optional
         As of `QuantityTable`.
+    energies : callable, optional
+        What is to be written of energies: kinetic, strain, dissipation, power, and what is left of their balance. It is
+        called for every step, and first for the step that a run goes on after.
 
     Attributes
     ----------
@@ -195,7 +207,9 @@ class StepTable:
         counts: Mapping[str, Counts],
         clock: Callable[[], float] = perf_counter,
         kept: int | None = None,
+        energies: Callable[[StepRecord], Sequence[float | None]] | None = None,
     ) -> None:
+        self._energies = energies or (lambda record: (None,) * 5)
         self._counts, self._clock = counts, clock
         self._opened = clock()
         self._mesh: object = None
@@ -219,17 +233,14 @@ class StepTable:
                 record.step,
                 _rounded(record.time),
                 _rounded(record.dt),
-                *(
-                    (None, None, None)
-                    if coupling is None
-                    else (coupling.iterations, coupling.displacement, coupling.force)
-                ),
+                *((None,) * len(fields(CouplingRecord)) if coupling is None else astuple(coupling)),
                 record.min_det_J,
                 blocks,
                 *motion,
                 sum(count.factorisations for count in self._counts.values()),
                 self._because(),
                 *(sum(getattr(count, name) for count in self._counts.values()) for name in _COUNTED),
+                *self._energies(record),
                 record.local_error,
                 len(record.rejected),
                 ", ".join(dict.fromkeys(rejection.error for rejection in record.rejected)) or None,
@@ -262,6 +273,7 @@ class StepTable:
         self.blocks_regenerated, self.mesh_jumps = memory["blocks_regenerated"], memory["mesh_jumps"]
         self._reasons, self._mesh = dict(memory["reasons"]), record.state.mesh
         self._opened = self._clock() - memory["seconds"]
+        self._energies(record)
 
     def _because(self) -> str | None:
         """Reasons for the factorisations of this step, with their numbers."""

@@ -54,6 +54,8 @@ def output_items(case: Case) -> Iterator[Item]:
         else:
             times = counted(-(-case.time.steps // output.every), "time")
             yield Item("fields", f"{files} every {counted(output.every, 'step')} and at the end: {times}")
+    if output.energy and isinstance(case.time, Unsteady):
+        yield Item("energy", "balanced in every step, in steps.csv")
     if output.checkpoint_every is not None and isinstance(case.time, Unsteady):
         yield Item("restart file", f"every {counted(output.checkpoint_every, 'step')} and at the end")
     if output.plots:

@@ -25,6 +25,8 @@ class BoundaryFlow:
     solver : FluidSolver
     names : sequence of str or None
         Of the mesh's edges, each side counts once; None for the whole boundary.
+    sides : ndarray, shape (k, 2), optional
+        Elements and sides instead.
 
     Raises
     ------
@@ -32,9 +34,11 @@ class BoundaryFlow:
         If a name is unknown or its edges are not at the fluid's boundary.
     """
 
-    def __init__(self, solver: FluidSolver, names: Sequence[str] | None = None) -> None:
+    def __init__(self, solver: FluidSolver, names: Sequence[str] | None = None, *, sides: Index | None = None) -> None:
         self._solver = solver
-        self._sides = boundary_sides(solver.mesh) if names is None else named_sides(solver.mesh, names)
+        if sides is None:
+            sides = boundary_sides(solver.mesh) if names is None else named_sides(solver.mesh, names)
+        self._sides = sides
 
     def rate(self, state: FluidState, *, relative: bool = False) -> float:
         """Return ∫ u·n, the volume per unit time and depth that leaves, or ∫ (u - w)·n relative to the mesh."""

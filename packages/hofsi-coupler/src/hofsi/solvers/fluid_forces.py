@@ -19,7 +19,7 @@ from hofsi.solvers.fluid import FluidSolver, FluidState
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides", "given_traction", "named_sides"]
+__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides", "given_traction", "interface_sides", "named_sides"]
 
 
 def boundary_sides(mesh: QuadMesh) -> Index:
@@ -180,6 +180,14 @@ class BoundaryForce:
             X = state.points[0][solver.space.velocity_cells]
             for group in side_geometry(X, sides, solver.space.velocity_sides):
                 yield group.x, given_traction(solver, condition, group, state)
+
+
+def interface_sides(solver: FluidSolver) -> Index:
+    """Element sides at the fluid's boundary that no condition names, shape (k, 2): those wet by solids."""
+    mesh, outer = solver.mesh, boundary_sides(solver.mesh)
+    dry = [mesh.edge_groups[name] for condition in solver.fluid.boundaries for name in condition.on]
+    named = np.concatenate(dry) if dry else np.zeros((0, 2), dtype=np.int64)
+    return np.asarray(outer[~np.isin(outer @ [4, 1], named @ [4, 1])])
 
 
 def given_traction(
