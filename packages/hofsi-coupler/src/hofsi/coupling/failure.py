@@ -12,6 +12,7 @@ __all__ = ["coupling_failure", "solid_failure"]
 _NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers, ...
 _NEARLY_THERE = 1e-7  # ... and so is everything, whatever the force says, when the displacement is as near as that
 _HEAVY = 1.0  # gain above which plain iteration diverges
+_DOMINANT = 10.0  # gain above which it, and not the load itself, is what the solids cannot bear
 
 
 def coupling_failure(
@@ -68,7 +69,7 @@ def solid_failure(error: ConvergenceError, watch: StallWatch, where: str) -> Con
         With all iterations before that.
     where : str
     """
-    if watch.gain <= _HEAVY:
+    if watch.gain <= _DOMINANT:
         return error
     problem = (
         f"diverging: after {watch.iterations} iterations the solids bear the fluid's load no more ({error.problem})"

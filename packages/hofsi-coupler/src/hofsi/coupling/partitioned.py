@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hofsi import case
 from hofsi.clock import Clock
-from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.coupled_memory import CoupledMemory
-from hofsi.coupling.failure import coupling_failure, solid_failure
+from hofsi.coupling.fixed_point import FixedPoint, Flow, Solution
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.interface_balance import InterfaceBalance
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.predictors import predict
 from hofsi.coupling.relaxation import Accelerator
-from hofsi.coupling.stall import StallWatch, Verdict
-from hofsi.errors import ConvergenceError, CouplingError
+from hofsi.errors import ConvergenceError
 from hofsi.motion import MeshMotion, MeshState
 from hofsi.records import CouplingRecord, State
 from hofsi.solvers.fluid import FluidSolver, FluidState, FluidStep
@@ -33,37 +31,6 @@ __all__ = ["CoupledMarch"]
 _HISTORY = 6  # interface displacements kept: a cubic predictor needs four, and all that a start needs to fade
 _SMALLEST_PART = 1.0 / 64.0  # of the fluid's load, in a steady problem
 _NEWTON = 2  # Newton iterations of the fluid in one coupling iteration
-_STEADY = "steady coupling"
-_INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
-
-
-@dataclass
-class _Fields:
-    """What the last coupling iteration left behind."""
-
-    fluid: FluidState
-    mesh: MeshState
-    solid: SolidStep
-    displacement: Array
-
-
-@dataclass
-class _Flow:
-    """The flow around one displacement of the interface: its load, and the rest when it is asked for.
-
-    Attributes
-    ----------
-    force : ndarray, shape (k, 2)
-        On the solid, at the nodes of the interface.
-    converged : bool
-        Whether the flow itself has.
-    finish : callable
-        Makes the flow's state, whose load confirms ``force``, and its mesh.
-    """
-
-    force: Array
-    converged: bool
-    finish: Callable[[], tuple[FluidState, MeshState]]
 
 
 class CoupledMarch:
@@ -96,14 +63,13 @@ class CoupledMarch:
     ) -> None:
         self._fluid, self._solid, self._interface, self._motion = fluid, solid, interface, motion
         self._prescribed, self._settings = prescribed, settings
-        self._accelerator, self._clock = accelerator, clock
-        self._test = ConvergenceTest(settings.tolerance, settings.force_tolerance)
+        self._clock = clock
         self._rows = np.searchsorted(motion.driven.nodes, interface.fluid)
         held = np.logical_and.reduce(solid.supports.constraints.fixed[interface.solid], axis=1)
         self._load = InterfaceLoad(fluid, interface, held)
         self._balance = InterfaceBalance(fluid, interface, self._load)
+        self._iteration = FixedPoint(self._load, solid, interface, settings, accelerator, clock)
         self._regenerated = 0  # blocks, in the meshes of the step at hand
-        self._believing = True  # responses of the fluid, until its fields tell another force
 
     def initial(self, time: float) -> State:
         """Initial fields; the fluid mesh fits the solid's initial displacement."""
@@ -114,7 +80,8 @@ class CoupledMarch:
 
     def memory(self) -> CoupledMemory:
         """What is kept between steps besides the state."""
-        return CoupledMemory(self._fluid.memory(), self._solid.memory(), self._accelerator.memory(), self._test.largest)
+        accelerator, test = self._iteration.accelerator, self._iteration.test
+        return CoupledMemory(self._fluid.memory(), self._solid.memory(), accelerator.memory(), test.largest)
 
     def resume(self, state: State, memory: object) -> None:
         """Become what the solvers and the coupling were at a state."""
@@ -123,8 +90,8 @@ class CoupledMarch:
             raise TypeError(f"memory: got {type(memory).__name__}; expected CoupledMemory, of a coupled problem.")
         self._fluid.resume(memory.fluid, fluid)
         self._solid.resume(memory.solid)
-        self._accelerator.recall(memory.accelerator)
-        self._test.recall(memory.largest)
+        self._iteration.accelerator.recall(memory.accelerator)
+        self._iteration.test.recall(memory.largest)
 
     def _driven(self, d: Array, time: float) -> Array:
         displacement = self._prescribed(time)
@@ -166,19 +133,24 @@ class CoupledMarch:
         fixed = None if implicit else begin(predicted, None)
         last: FluidStep | None = None
 
-        def flow(d: Array) -> _Flow:
+        def flow(d: Array) -> Flow:
             nonlocal last
             last, moved = fixed or begin(d, last)
             return self._flow(last, moved, c[0] * d + rest, _NEWTON if implicit else None)
 
-        self._test.begin_step(state.interface[0], self._load.evaluate(fluid))
-        fields, record = self._iterate(predicted, flow, solid_step, f"coupling, t = {time:g}")
-        d = fields.displacement[self._interface.solid]
-        with self._clock.phase("solid"):
-            accepted = solid_step.accept(fields.displacement)
-        reached = State(fields.fluid, accepted, fields.mesh, (d, *state.interface[: _HISTORY - 1]))
+        self._iteration.test.begin_step(state.interface[0], self._load.evaluate(fluid))
+        found = self._iteration.solve(predicted, flow, solid_step, f"coupling, t = {time:g}")
+        reached = self._reached(found, solid_step, state.interface)
         with self._clock.phase("coupling"):
-            return reached, self._balance.completed(record, state, reached, steps[0])
+            return reached, self._balance.completed(found.record, state, reached, steps[0])
+
+    def _reached(self, found: Solution, solid_step: SolidStep, interface: tuple[Array, ...]) -> State:
+        """The state of a solution, after steps with these displacements of the interface."""
+        d = found.displacement[self._interface.solid]
+        with self._clock.phase("solid"):
+            accepted = solid_step.accept(found.displacement)
+        mesh = replace(found.mesh, regenerated=self._regenerated)
+        return State(found.fluid, accepted, mesh, (d, *interface[: _HISTORY - 1]))
 
     def steady(self, state: State) -> tuple[State, CouplingRecord | None]:
         """Iterate steady flow and static equilibrium on meshes that fit the current displacement.
@@ -191,26 +163,25 @@ class CoupledMarch:
         solid_step = self._solid.begin_static(solid)
         start = solid.displacement if solid.displacement.any() else self._unloaded(solid_step)
         try:
-            fields, record = self._steady(state, start, solid_step, 1.0)
+            found = self._steady(state, start, solid_step, 1.0)
         except ConvergenceError:
             unloaded = self._unloaded(self._solid.begin_static(solid))
-            fields, record = self._steady_by_parts(state, unloaded)
-        d = fields.displacement[self._interface.solid]
-        return State(fields.fluid, fields.solid.accept(fields.displacement), fields.mesh, (d,)), record
+            found, solid_step = self._steady_by_parts(state, unloaded)
+        return self._reached(found, solid_step, ()), found.record
 
     def _unloaded(self, solid_step: SolidStep) -> Array:
         """The displacement without the fluid's load."""
         with self._clock.phase("solid"):
             return solid_step.solve(None)
 
-    def _steady_by_parts(self, state: State, displacement: Array) -> tuple[_Fields, CouplingRecord]:
+    def _steady_by_parts(self, state: State, displacement: Array) -> tuple[Solution, SolidStep]:
         """Apply the fluid's load in parts, from one steady state to the next."""
         done, part = 0.0, 0.25
         while True:
             reached = min(1.0, done + part)
             try:
                 solid_step = self._solid.begin_static(_parts(state)[1])
-                fields, record = self._steady(state, displacement, solid_step, reached)
+                found = self._steady(state, displacement, solid_step, reached)
             except ConvergenceError as error:
                 part *= 0.5
                 if part < _SMALLEST_PART:
@@ -221,18 +192,16 @@ class CoupledMarch:
                     ) from error
                 continue
             if reached == 1.0:
-                return fields, record
-            displacement, done, part = fields.displacement, reached, 1.5 * part
+                return found, solid_step
+            displacement, done, part = found.displacement, reached, 1.5 * part
 
-    def _steady(
-        self, state: State, displacement: Array, solid_step: SolidStep, share: float
-    ) -> tuple[_Fields, CouplingRecord]:
+    def _steady(self, state: State, displacement: Array, solid_step: SolidStep, share: float) -> Solution:
         """Steady state under a share of the fluid's load, sought from a displacement of the solid."""
         fluid, _, mesh = _parts(state)
         at_rest = np.zeros((len(self._interface.fluid), 2))
         last: FluidStep | None = None
 
-        def flow(d: Array) -> _Flow:
+        def flow(d: Array) -> Flow:
             nonlocal last
             moved = self._move(mesh, d, fluid.time)
             with self._clock.phase("fluid"):
@@ -242,10 +211,11 @@ class CoupledMarch:
             last = step
             return self._flow(step, moved, at_rest)
 
-        self._test.begin_step(0.0, 0.0)
-        return self._iterate(displacement[self._interface.solid], flow, solid_step, _STEADY, share)
+        self._iteration.test.begin_step(0.0, 0.0)
+        d = displacement[self._interface.solid]
+        return self._iteration.solve(d, flow, solid_step, "steady coupling", share=share, steady=True)
 
-    def _flow(self, step: FluidStep, mesh: MeshState, velocity: Array, max_iterations: int | None = None) -> _Flow:
+    def _flow(self, step: FluidStep, mesh: MeshState, velocity: Array, max_iterations: int | None = None) -> Flow:
         """The flow of a step for a velocity of the interface: solved for, or the step's response to it."""
 
         def solve() -> tuple[FluidState, MeshState]:
@@ -254,77 +224,12 @@ class CoupledMarch:
                 return step.accept(), mesh
 
         with self._clock.phase("fluid"):
-            reaction = step.respond(velocity) if self._believing else None
+            reaction = step.respond(velocity) if self._iteration.believing else None
         if reaction is not None:
-            return _Flow(-reaction, True, solve)
+            return Flow(-reaction, True, solve)
         state, mesh = solve()
         with self._clock.phase("fluid"):
-            return _Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh))
-
-    def _iterate(
-        self,
-        d: Array,
-        flow: Callable[[Array], _Flow],
-        solid_step: SolidStep,
-        where: str,
-        share: float = 1.0,
-    ) -> tuple[_Fields, CouplingRecord]:
-        """Fixed-point iteration d ↦ d̃ with acceleration; one that fails takes the accelerator's memory with it."""
-        try:
-            return self._iterated(d, flow, solid_step, where, share)
-        except ConvergenceError:
-            self._accelerator.forget()
-            raise
-
-    def _iterated(
-        self,
-        d: Array,
-        flow: Callable[[Array], _Flow],
-        solid_step: SolidStep,
-        where: str,
-        share: float,
-    ) -> tuple[_Fields, CouplingRecord]:
-        """Fixed-point iteration d ↦ d̃ with acceleration, under a share of the fluid's load."""
-        settings, interface = self._settings, self._interface
-        self._accelerator.begin_step()
-        self._believing = True
-        inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
-        displacement: Array | None = None
-        residuals, watch = Residuals(np.inf, np.inf), StallWatch()
-        verdict: Verdict = ""
-        for iteration in range(1, settings.max_iterations + 1):
-            now = flow(d)
-            force = now.force
-            try:
-                with self._clock.phase("solid"):
-                    displacement = solid_step.solve(share * self._nodal(force), displacement, tolerance=inner)
-            except ConvergenceError as error:
-                raise solid_failure(error, watch, where) from error
-            image = displacement[interface.solid]
-            residual = image - d
-            if not (np.isfinite(residual).all() and np.isfinite(force).all()):
-                raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
-            residuals = self._test.residuals(image, residual, force)
-            excess = self._test.excess(residuals)
-            if now.converged and excess <= 1.0:
-                fluid, moved = now.finish()
-                self._believing = self._test.confirms(force, self._load.evaluate(fluid))
-                if self._believing:
-                    self._accelerator.end_step()
-                    record = CouplingRecord(iteration, residuals.displacement, residuals.force)
-                    mesh = replace(moved, regenerated=self._regenerated)
-                    return _Fields(fluid, mesh, solid_step, displacement), record
-            verdict = watch.observe(image, residual, excess)
-            if verdict:
-                break
-            with self._clock.phase("coupling"):
-                d = self._accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
-        raise coupling_failure(verdict, residuals, self._test, watch, settings, where, steady=where == _STEADY)
-
-    def _nodal(self, force: Array) -> Array:
-        nodal = np.zeros(self._solid.mesh.points.shape)
-        nodal[self._interface.solid] = force
-        return nodal
+            return Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh))
 
 
 def _parts(state: State) -> tuple[FluidState, SolidState, MeshState]:

@@ -1,0 +1,187 @@
+"""The fixed-point iteration of one coupled step, or of a steady state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hofsi import case
+from hofsi.clock import Clock
+from hofsi.coupling.convergence import ConvergenceTest, Residuals
+from hofsi.coupling.failure import coupling_failure, solid_failure
+from hofsi.coupling.interface import Interface
+from hofsi.coupling.load import InterfaceLoad
+from hofsi.coupling.relaxation import Accelerator
+from hofsi.coupling.stall import StallWatch, Verdict
+from hofsi.errors import ConvergenceError, CouplingError
+from hofsi.motion import MeshState
+from hofsi.records import CouplingRecord
+from hofsi.solvers.fluid import FluidState
+from hofsi.solvers.solid import SolidSolver, SolidStep
+
+Array = NDArray[np.float64]
+
+__all__ = ["FixedPoint", "Flow", "Solution"]
+
+_INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
+
+
+@dataclass
+class Flow:
+    """The flow around one displacement of the interface: its load, and the rest when it is asked for.
+
+    Attributes
+    ----------
+    force : ndarray, shape (k, 2)
+        On the solid, at the nodes of the interface.
+    converged : bool
+        Whether the flow itself has.
+    finish : callable
+        Makes the flow's state, whose load confirms ``force``, and its mesh.
+    """
+
+    force: Array
+    converged: bool
+    finish: Callable[[], tuple[FluidState, MeshState]]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What the last iteration left behind.
+
+    Attributes
+    ----------
+    fluid : FluidState
+    mesh : MeshState
+    displacement : ndarray, shape (n, 2)
+        Of the solid.
+    record : CouplingRecord
+    """
+
+    fluid: FluidState
+    mesh: MeshState
+    displacement: Array
+    record: CouplingRecord
+
+
+class FixedPoint:
+    """Iterates d ↦ d̃: displacement of the interface, flow, load, displacement of the solid; accelerated.
+
+    Parameters
+    ----------
+    load : InterfaceLoad
+    solid : SolidSolver
+    interface : Interface
+    settings : CouplingSettings
+    accelerator : Accelerator
+    clock : Clock
+
+    Attributes
+    ----------
+    accelerator : Accelerator
+    test : ConvergenceTest
+    believing : bool
+        Whether responses of the fluid serve; False in a step in which its fields have told another force.
+    """
+
+    def __init__(
+        self,
+        load: InterfaceLoad,
+        solid: SolidSolver,
+        interface: Interface,
+        settings: case.CouplingSettings,
+        accelerator: Accelerator,
+        clock: Clock,
+    ) -> None:
+        self._load, self._solid, self._interface = load, solid, interface
+        self._settings, self._clock = settings, clock
+        self.accelerator = accelerator
+        self.test = ConvergenceTest(settings.tolerance, settings.force_tolerance)
+        self.believing = True
+
+    def solve(
+        self,
+        d: Array,
+        flow: Callable[[Array], Flow],
+        solid_step: SolidStep,
+        where: str,
+        *,
+        share: float = 1.0,
+        steady: bool = False,
+    ) -> Solution:
+        """Iterate until displacement and force have converged.
+
+        Parameters
+        ----------
+        d : ndarray, shape (k, 2)
+            First displacement of the interface.
+        flow : callable
+            Makes the flow around a displacement of the interface.
+        solid_step : SolidStep
+        where : str
+            For messages.
+        share : float
+            Of the fluid's load that acts on the solid.
+        steady : bool
+
+        Raises
+        ------
+        ConvergenceError
+            If that does not succeed; the accelerator has forgotten everything then.
+        """
+        try:
+            return self._solve(d, flow, solid_step, where, share, steady)
+        except ConvergenceError:
+            self.accelerator.forget()
+            raise
+
+    def _solve(
+        self,
+        d: Array,
+        flow: Callable[[Array], Flow],
+        solid_step: SolidStep,
+        where: str,
+        share: float,
+        steady: bool,
+    ) -> Solution:
+        settings = self._settings
+        self.accelerator.begin_step()
+        self.believing = True
+        inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
+        displacement: Array | None = None
+        residuals, watch = Residuals(np.inf, np.inf), StallWatch()
+        verdict: Verdict = ""
+        for iteration in range(1, settings.max_iterations + 1):
+            now = flow(d)
+            try:
+                with self._clock.phase("solid"):
+                    displacement = solid_step.solve(share * self._nodal(now.force), displacement, tolerance=inner)
+            except ConvergenceError as error:
+                raise solid_failure(error, watch, where) from error
+            image = displacement[self._interface.solid]
+            residual = image - d
+            if not (np.isfinite(residual).all() and np.isfinite(now.force).all()):
+                raise CouplingError(f"displacement or force is not finite in iteration {iteration}.", "diverged", where)
+            residuals = self.test.residuals(image, residual, now.force)
+            excess = self.test.excess(residuals)
+            if now.converged and excess <= 1.0:
+                fluid, mesh = now.finish()
+                self.believing = self.test.confirms(now.force, self._load.evaluate(fluid))
+                if self.believing:
+                    self.accelerator.end_step()
+                    record = CouplingRecord(iteration, residuals.displacement, residuals.force)
+                    return Solution(fluid, mesh, displacement, record)
+            verdict = watch.observe(image, residual, excess)
+            if verdict:
+                break
+            with self._clock.phase("coupling"):
+                d = self.accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
+        raise coupling_failure(verdict, residuals, self.test, watch, settings, where, steady=steady)
+
+    def _nodal(self, force: Array) -> Array:
+        nodal = np.zeros(self._solid.mesh.points.shape)
+        nodal[self._interface.solid] = force
+        return nodal
