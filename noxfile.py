@@ -18,6 +18,9 @@ HOBLOCK = "packages/hoblock"
 HOFSI = "packages/hofsi-coupler"
 SOURCES = os.pathsep.join(str(ROOT / package / "src") for package in (HOBLOCK, HOFSI))
 
+# Scripts in benchmarks/ that take hours.
+STUDIES = ("flag_oscillations.py",)
+
 # Tools whose next release may judge the same code differently.
 RUFF = "ruff==0.17.6"
 MYPY = "mypy==2.4.1"
@@ -98,13 +101,29 @@ def verification(session: nox.Session) -> None:
     session.run("pytest", "-m", "verification", "tests/verification", *session.posargs)
 
 
+@nox.session(name="verification-long")
+def verification_long(session: nox.Session) -> None:
+    """Make the studies that take hours, as far as benchmarks/measured/ does not have them yet."""
+    install_packages(session)
+    session.run(
+        "python",
+        "benchmarks/flag_oscillations.py",
+        "--json",
+        "benchmarks/measured/flag_oscillations.json",
+        "--picture",
+        "docs/images/flag_oscillations.png",
+        *session.posargs,
+    )
+
+
 @nox.session
 def benchmarks(session: nox.Session) -> None:
-    """Run every script in benchmarks/, or those given as arguments."""
+    """Run every script in benchmarks/ but those of verification-long, or those given as arguments."""
     scripts = [name for name in session.posargs if name.endswith(".py")]
     options = [word for word in session.posargs if word not in scripts]
     install_packages(session, "gmsh")
-    for script in scripts or sorted(str(path) for path in Path("benchmarks").glob("[!_]*.py")):
+    quick = (path for path in Path("benchmarks").glob("[!_]*.py") if path.name not in STUDIES)
+    for script in scripts or sorted(map(str, quick)):
         session.run("python", script, *options)
 
 

@@ -7,9 +7,10 @@ Each run is a scene of examples/ from rest to its end, with the changes that are
 
     python benchmarks/flag_oscillations.py fsi3_ring --like fsi2 --set constants.U=1 --set 'solid[0].density=10000' ...
 
-Runs are appended to the JSON file; one that is there already is not made again, so that a study of hours can be made in
-parts. A picture shows the errors of all runs in the file against their seconds. Where the environment variable
-HOFSI_REFERENCE names a folder with FeatFlow's series ref_fsi2.point and ref_fsi3.point, each run is drawn over them.
+Without a scene the whole study is made. Runs are appended to the JSON file; one that is there already is not made
+again, so that a study of hours can be made in parts. A picture shows the errors of all runs in the file against their
+seconds. Where the environment variable HOFSI_REFERENCE names a folder with FeatFlow's series ref_fsi2.point and
+ref_fsi3.point, each run is drawn over them.
 """
 
 from __future__ import annotations
@@ -58,6 +59,22 @@ UNCERTAINTY = {
 }
 PHASES = ("mesh", "fluid", "solid", "coupling", "quantities", "other")
 NAMES = ("u_x", "u_y", "drag", "lift")
+FSI2 = ["constants.U=1", "solid[0].density=10000", "solid[0].youngs_modulus=1.4e6", "time.dt=0.005", "time.end=15"]
+# Scene, whose figures, changes: orders, steps, the other mover, geometry and scheme, another layout.
+STUDY = [
+    *((scene, scene, []) for scene in ("fsi2", "fsi3")),
+    *((scene, scene, [f"mesh.order={order}"]) for order in (5, 6) for scene in ("fsi2", "fsi3")),
+    *(("fsi2", "fsi2", [f"time.dt={dt}"]) for dt in (0.0025, 0.00125)),
+    *(("fsi3", "fsi3", [f"time.dt={dt}"]) for dt in (0.001, 0.0005)),
+    *(
+        (scene, scene, [change])
+        for change in ('mover.type="pseudo-solid"', 'coupling.geometry="implicit"', 'time.solid="bdf2"')
+        for scene in ("fsi2", "fsi3")
+    ),
+    *(("fsi3_ring", "fsi3", [f"mesh.order={order}"]) for order in (4, 5)),
+    *(("fsi3_ring", "fsi2", [*FSI2, f"mesh.order={order}"]) for order in (4, 5)),
+    ("fsi3", "fsi3", ["mesh.order=6", "time.dt=0.001"]),
+]
 COLUMNS = {"t": 0, "u_x": 10, "u_y": 11, "drag": (4, 6), "lift": (5, 7)}  # of the series
 
 
@@ -181,29 +198,33 @@ def _last_crossings(t: Array, u: Array) -> tuple[float, float]:
 def main(argv: Sequence[str] | None = None) -> Result:
     """Make the runs that are missing and report all."""
     options = parser(__doc__)
-    options.add_argument("scene", help="name of a scene in examples/: fsi2, fsi3, ...")
+    options.add_argument(
+        "scene", nargs="?", help="name of a scene in examples/: fsi2, fsi3, ...; default: the whole study"
+    )
     options.add_argument("--like", choices=REFERENCE, help="whose figures to compare with; default that of its name")
     options.add_argument("--orders", type=int, nargs="+", default=[None], help="mesh.order of each run")
     options.add_argument("--set", action="append", default=[], dest="changes", metavar="KEY=VALUE")
     options.add_argument("--picture", type=Path, metavar="FILE", help="default beside the result")
     asked = options.parse_args(argv)
-    like = asked.like or asked.scene.split("_")[0]
     path = asked.json or ROOT / "results" / "flag_oscillations.json"
     rows: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["rows"] if path.is_file() else []
     picture = asked.picture or path.with_suffix(".png")
-    for order in asked.orders:
-        changes = [*([] if order is None else [f"mesh.order={order}"]), *asked.changes]
-        if any((row["scene"], row["changes"]) == (asked.scene, " ".join(changes)) for row in rows):
+    runs: Sequence[tuple[str, str, list[str]]] = STUDY
+    if asked.scene is not None:
+        like = asked.like or asked.scene.split("_")[0]
+        orders = [[] if order is None else [f"mesh.order={order}"] for order in asked.orders]
+        runs = [(asked.scene, like, [*order, *asked.changes]) for order in orders]
+    for scene, like, changes in runs:
+        if any((row["scene"], row["changes"]) == (scene, " ".join(changes)) for row in rows):
             continue
         with tempfile.TemporaryDirectory() as folder:
-            rows.append(measure(asked.scene, like, changes, Path(folder)))
+            rows.append(measure(scene, like, changes, Path(folder)))
             series = _series(Path(folder) / "quantities.csv")
-        result = Result("flag_oscillations", {}, rows)
-        result.write(path)
+        Result("flag_oscillations", {}, rows).write(path)
         reference = reference_series(like)
         if reference is not None:
-            name = "_".join([asked.scene, *(change.replace("=", "-") for change in changes)]).replace('"', "")
-            draw_overlay(series, reference, " ".join([asked.scene, *changes]), picture.with_name(f"{name}.png"))
+            name = "_".join([scene, *(change.replace("=", "-") for change in changes)]).replace('"', "")
+            draw_overlay(series, reference, " ".join([scene, *changes]), picture.with_name(f"{name}.png"))
     draw_errors(rows, picture)
     print(Result("flag_oscillations", {}, [shown(row) for row in rows]).table(), end="\n\n")
     return report(Result("flag_oscillations", {}, rows), path)
