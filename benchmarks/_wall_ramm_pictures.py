@@ -66,7 +66,8 @@ def draw_histograms(runs: Runs, path: Path) -> None:
             text = f"worst {worst:.3f}, mean {values.mean():.3f}"
             side = (0.03, "left") if name == names[0] else (0.97, "right")
             axes.text(side[0], 0.9, text, transform=axes.transAxes, fontsize=8, va="top", ha=side[1])
-        row[0].set_ylabel(mover, fontsize=8)
+            axes.set_yscale("log")
+        row[0].set_ylabel(f"{mover}\nelements", fontsize=8)
     for axes, name in zip(grid[-1], names, strict=True):
         axes.set_xlabel(name)
     _save(figure, path)
