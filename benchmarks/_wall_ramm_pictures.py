@@ -18,8 +18,8 @@ _STYLES = ("-", "--", ":", "-.")
 
 def draw_force_and_tip(runs: Runs, path: Path) -> None:
     """Fig. 5: force and tip displacement of all runs over each other, whole and the last 1.2 s."""
-    figure = _figure(11.0, 6.0)
-    grid = figure.subplots(2, 2, sharex="col", width_ratios=(1.6, 1.0), squeeze=False)
+    figure = _figure(10.0, 5.4)
+    grid = figure.subplots(2, 2, sharex="col", width_ratios=(1.5, 1.0), squeeze=False)
     for row, (name, label) in zip(grid, (("lift", "vertical force, dyn/cm"), ("u_y", "tip, cm")), strict=True):
         for (mover, run), style in zip(runs.items(), _STYLES, strict=False):
             last = run["t"] >= run["t"][-1] - 1.2
@@ -31,7 +31,7 @@ def draw_force_and_tip(runs: Runs, path: Path) -> None:
         for axes in row:
             axes.set_ylim(-1.1 * largest, 1.1 * largest)
             axes.grid(alpha=0.3)
-    grid[0, 1].legend(fontsize=8, loc="upper right")
+    figure.legend(*grid[0, 1].get_legend_handles_labels(), fontsize=8, loc="outside upper center", ncols=4)
     for axes in grid[-1]:
         axes.set_xlabel("t, s")
     _save(figure, path)
@@ -83,5 +83,10 @@ def _figure(width: float, height: float) -> Any:
 
 
 def _save(figure: Any, path: Path) -> None:
+    from PIL import Image
+
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=110)
+    with Image.open(path) as image:  # a third of the bytes
+        few = image.convert("RGB").quantize(64)
+    few.save(path, optimize=True)

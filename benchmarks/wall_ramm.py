@@ -42,7 +42,7 @@ MOVERS = {
     "pseudo-solid": 'type="pseudo-solid"',
     "angles": 'type="angle-optimisation"',
     "angles, published": 'type="angle-optimisation", form="published"',
-    "published, 20 sweeps": 'type="angle-optimisation", form="published", sweeps=20',
+    "published, tight": 'type="angle-optimisation", form="published", lower=0.8, penalty=100',
     "published, n = 1": 'type="angle-optimisation", form="published", power=1',
 }
 PAPER = ("barrier", "pseudo-solid", "angles, published")
