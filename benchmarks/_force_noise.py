@@ -8,6 +8,7 @@ from scipy.signal import firwin, kaiserord
 
 Array = NDArray[np.float64]
 
+SETTLED = 2.5  # s, when the flap of Wall and Ramm swings fully
 CUTOFF = 50.0  # Hz; the filter is half open here
 WIDTH = 30.0  # Hz, of the transition: closed (10⁻⁵) below CUTOFF - WIDTH/2, open above CUTOFF + WIDTH/2
 _ATTENUATION = 100.0  # dB

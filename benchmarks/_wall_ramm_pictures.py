@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from _force_noise import SETTLED, high_passed
+
 Array = NDArray[np.float64]
 Runs = Mapping[str, Mapping[str, Array]]
 
@@ -71,6 +73,40 @@ def draw_histograms(runs: Runs, path: Path) -> None:
     for axes, name in zip(grid[-1], names, strict=True):
         axes.set_xlabel(name)
     _save(figure, path)
+
+
+def draw_noise(runs: Runs, path: Path) -> None:
+    """What force and the noisiest block vertex have above the cutoff, both in percent of the amplitude."""
+    figure = _figure(10.0, 4.2)
+    grid = figure.subplots(2, max(len(runs), 1), sharex=True, sharey="row", squeeze=False)
+    for column, (mover, run) in zip(grid.T, runs.items(), strict=False):
+        t = run["t"]
+        paths = run["vertices"].reshape(len(t), -1)
+        high = np.stack([high_passed(t, path)[1] for path in paths.T])
+        late = slice(np.searchsorted(t, SETTLED), None)
+        worst = int(np.abs(high[:, late]).max(axis=1).argmax())
+        times, force = high_passed(t, run["lift"])
+        for axes, values, of in zip(column, (force, high[worst]), (run["lift"], run["u_y"]), strict=True):
+            axes.plot(times, 200.0 * values / np.ptp(of[late]), linewidth=0.5)
+            axes.set_xlim(SETTLED, t[-1])
+            axes.grid(alpha=0.3)
+        column[0].set_title(mover, size=9)
+        column[1].set_xlabel("t, s")
+    grid[0, 0].set_ylabel("force, %")
+    grid[1, 0].set_ylabel("block vertex, %")
+    for row in grid:
+        row[0].set_ylim(*_limits(row))
+    _save(figure, path)
+
+
+def _limits(row: Any) -> tuple[float, float]:
+    """Limits of axes that hold what is in view, not the start."""
+    largest = 1e-3
+    for axes in row:
+        for line in axes.lines:
+            t, values = line.get_data()
+            largest = max(largest, float(np.abs(values[t >= SETTLED]).max(initial=0.0)))
+    return -1.1 * largest, 1.1 * largest
 
 
 def _figure(width: float, height: float) -> Any:

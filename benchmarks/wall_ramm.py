@@ -23,9 +23,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from _force_noise import noise
+from _force_noise import SETTLED, noise
 from _result import ROOT, Result, parser, report
-from _wall_ramm_pictures import draw_force_and_tip, draw_histograms, draw_meshes
+from _wall_ramm_pictures import draw_force_and_tip, draw_histograms, draw_meshes, draw_noise
 from hoblock import equiangular_skewness, scaled_jacobian
 from hoblock.plot import block_outlines, element_outlines
 from hofsi import build, evaluators, load_case, simulate
@@ -46,7 +46,6 @@ MOVERS = {
     "published, n = 1": 'type="angle-optimisation", form="published", power=1',
 }
 PAPER = ("barrier", "pseudo-solid", "angles, published")
-SETTLED = 2.5  # s, from which amplitudes and noise are taken
 LAST = 0.36  # s before the end, longer than a period: the mesh that is kept is that of the highest tip in it
 KEYS = ("mover", "plane", "dt", "order", "end", "changes")
 
@@ -138,6 +137,10 @@ def _shown(row: Mapping[str, Any]) -> dict[str, object]:
     return {name: row[name] for name in names}
 
 
+def _beside(picture: Path, name: str) -> Path:
+    return picture.with_stem(f"{picture.stem}_{name}")
+
+
 def _file(folder: Path, key: Mapping[str, Any]) -> Path:
     name = "_".join(str(key[name]) for name in KEYS)
     return folder / ("".join(c if c.isalnum() or c in ".-_=" else "-" for c in name) + ".npz")
@@ -180,8 +183,9 @@ def main(argv: Sequence[str] | None = None) -> Result:
     picture = asked.picture or path.with_suffix(".png")
     draw_force_and_tip(runs, picture)
     runs = {mover: run for mover, run in runs.items() if "elements" in run}
-    draw_meshes(runs, picture.with_stem(f"{picture.stem}_meshes"))
-    draw_histograms(runs, picture.with_stem(f"{picture.stem}_quality"))
+    draw_meshes(runs, _beside(picture, "meshes"))
+    draw_noise({m: run for m, run in runs.items() if run["t"][-1] >= SETTLED + 1.0}, _beside(picture, "noise"))
+    draw_histograms(runs, _beside(picture, "quality"))
     print(Result("wall_ramm", {}, [_shown(row) for row in rows]).table(), end="\n\n")
     return report(Result("wall_ramm", {}, rows), path)
 

@@ -31,12 +31,12 @@ def runs(scripts, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def noise(scripts, runs):
-    """Largest part of a mover's force above 50 Hz from 2.5 s on, relative to its amplitude."""
+    """What a mover's force has above 50 Hz from 2.5 s on, largest and root mean square, relative to its amplitude."""
     from _force_noise import noise
 
     def measured(mover):
         table = np.genfromtxt(runs.picture.parent / mover / "quantities.csv", delimiter=",", names=True)
-        return noise(table["t"], table["lift"], 2.5)[0]
+        return noise(table["t"], table["lift"], 2.5)
 
     return measured
 
@@ -55,10 +55,12 @@ def test_frequency_lies_in_the_published_scatter(runs, mover):
     assert 2.8 < 3.0 / (times[-1] - times[0]) < 3.3
 
 
-def test_the_mesh_brings_no_oscillation_into_the_force(noise):
-    """Below a thousandth, where the optimisation as published has 0.23 %."""
-    assert noise("barrier") < 1e-3
-    assert noise("pseudo-solid") < 1e-3
+@pytest.mark.parametrize("mover", ["barrier", "pseudo-solid"])
+def test_the_mesh_brings_no_oscillation_into_the_force(noise, mover):
+    """What there is are waves of 40 to 60 Hz of the flow; with the optimisation as published it is 0.24 and 0.044 %."""
+    largest, mean = noise(mover)
+    assert largest < 1.4e-3
+    assert mean < 2.8e-4
 
 
 def test_meshes_that_do_not_drift_agree_from_the_start(runs):
