@@ -331,3 +331,20 @@ def test_series_that_the_filter_cannot_take_are_refused(force_noise):
         force_noise.high_passed(2.0 * t, t)
     with pytest.raises(ValueError, match="20 steps; expected at least the 45 of the filter"):
         force_noise.high_passed(t[:20], t[:20])
+
+
+def test_the_noisiest_block_vertex_is_told(measured):
+    measured("wall_ramm")
+    module = importlib.import_module("wall_ramm")
+    t = np.arange(0.0, 7.5, 0.005)
+    tip = 0.9 * np.sin(2.0 * np.pi * 3.2 * t)
+    vertices = np.zeros((len(t), 3, 2))
+    vertices[:, 0, 0] = 0.5 * tip
+    vertices[:, 1, 1] = 3.0 + 0.5 * tip + 0.009 * (-1.0) ** np.arange(len(t))
+    vertices[:, 2] = 7.0
+    assert module.mesh_noise(t, tip, vertices) == pytest.approx(0.01, rel=0.02)
+    found = module.figures({"t": t, "u_y": tip, "lift": tip, "vertices": vertices})
+    assert found["mesh noise %"] == pytest.approx(1.0, rel=0.02)
+    assert found["noise %"] < 0.01
+    assert found["u_y"] == pytest.approx(0.9, rel=0.01)
+    assert found["Hz"] == pytest.approx(3.2, rel=1e-3)
