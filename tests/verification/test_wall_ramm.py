@@ -57,7 +57,7 @@ def test_frequency_lies_in_the_published_scatter(runs, mover):
 
 @pytest.mark.parametrize("mover", ["barrier", "pseudo-solid"])
 def test_the_mesh_brings_no_oscillation_into_the_force(noise, mover):
-    """What there is are waves of 40 to 60 Hz of the flow; with the optimisation as published it is 0.24 and 0.044 %."""
+    """The waves that there are, finer steps show too; the optimisation as published has 0.24 and 0.044 %."""
     largest, mean = noise(mover)
     assert largest < 1.4e-3
     assert mean < 2.8e-4
