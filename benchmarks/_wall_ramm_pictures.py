@@ -77,7 +77,7 @@ def draw_histograms(runs: Runs, path: Path) -> None:
 
 def draw_noise(runs: Runs, path: Path) -> None:
     """What force and the noisiest block vertex have above the cutoff, both in percent of the amplitude."""
-    figure = _figure(10.0, 4.2)
+    figure = _figure(2.4 * max(len(runs), 2), 4.0)
     grid = figure.subplots(2, max(len(runs), 1), sharex=True, sharey="row", squeeze=False)
     for column, (mover, run) in zip(grid.T, runs.items(), strict=False):
         t = run["t"]
@@ -88,7 +88,7 @@ def draw_noise(runs: Runs, path: Path) -> None:
         times, force = high_passed(t, run["lift"])
         for axes, values, of in zip(column, (force, high[worst]), (run["lift"], run["u_y"]), strict=True):
             axes.plot(times, 200.0 * values / np.ptp(of[late]), linewidth=0.5)
-            axes.set_xlim(SETTLED, t[-1])
+            axes.set_xlim(SETTLED, max(run["t"][-1] for run in runs.values()))
             axes.grid(alpha=0.3)
         column[0].set_title(mover, size=9)
         column[1].set_xlabel("t, s")

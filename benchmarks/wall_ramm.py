@@ -8,8 +8,9 @@ Runs of examples/wall_ramm.toml to t = 7.5 s, as many as movers × planes × ste
 
 Runs are appended to the JSON file, their series go to a folder beside it; one that is there already is not made again,
 so that a study of hours can be made in parts. The pictures show the runs with the first plane, step and order asked
-for. Noise is what the force has above 50 Hz from 2.5 s on, largest value in percent of its amplitude
-(`_force_noise.py`); that of the mesh is the same of the worst block vertex, in terms of the tip's amplitude.
+for; that of the noise all movers in the file. Noise is what the force has above 50 Hz from 2.5 s on, largest value in
+percent of its amplitude (`_force_noise.py`); that of the mesh is the same of the worst block vertex, in terms of the
+tip's amplitude.
 """
 
 from __future__ import annotations
@@ -184,7 +185,9 @@ def main(argv: Sequence[str] | None = None) -> Result:
     draw_force_and_tip(runs, picture)
     runs = {mover: run for mover, run in runs.items() if "elements" in run}
     draw_meshes(runs, _beside(picture, "meshes"))
-    draw_noise({m: run for m, run in runs.items() if run["t"][-1] >= SETTLED + 1.0}, _beside(picture, "noise"))
+    alike = [row for row in rows if all(row[name] == keys[0][name] for name in ("plane", "dt", "order", "changes"))]
+    noisy = {row["mover"]: _loaded(_file(folder, row)) for row in alike if row["noise %"] is not None}
+    draw_noise(noisy, _beside(picture, "noise"))
     draw_histograms(runs, _beside(picture, "quality"))
     print(Result("wall_ramm", {}, [_shown(row) for row in rows]).table(), end="\n\n")
     return report(Result("wall_ramm", {}, rows), path)
