@@ -10,7 +10,7 @@ pytest.importorskip("matplotlib")
 pytestmark = [pytest.mark.verification, pytest.mark.slow]
 
 ROOT = Path(__file__).parents[2]
-MOVERS = ("barrier", "pseudo-solid", "angle-optimisation")
+SMOOTH = ("barrier", "pseudo-solid")  # movers whose mesh is a function of the position of the flap
 
 
 @pytest.fixture(scope="module")
@@ -41,22 +41,26 @@ def noise(scripts, runs):
     return measured
 
 
-@pytest.mark.parametrize(("mover", "least"), [("barrier", 0.9), ("pseudo-solid", 0.9), ("angle-optimisation", 0.75)])
-def test_the_flap_reaches_its_limit_cycle(runs, mover, least):
-    """The optimisation's mesh drifts, and the amplitude with it."""
+@pytest.mark.parametrize("mover", [*SMOOTH, "angle-optimisation"])
+def test_every_mesh_is_valid(runs, mover):
     assert len(runs.times[mover]) == 800
     assert runs.min_det_J[mover] > 0.0
-    assert all(least < value < 1.1 for _, value in runs.peaks(mover)[-3:])
 
 
-@pytest.mark.parametrize("mover", MOVERS)
+@pytest.mark.parametrize("mover", SMOOTH)
+def test_the_flap_reaches_its_limit_cycle(runs, mover):
+    """On the drifting mesh of the optimisation it does not until 4 s, see docs/verification.md."""
+    assert all(0.9 < value < 1.1 for _, value in runs.peaks(mover)[-3:])
+
+
+@pytest.mark.parametrize("mover", SMOOTH)
 def test_frequency_lies_in_the_published_scatter(runs, mover):
     """2.8 to 3.3 Hz covers the published values for plane strain and plane stress; see docs/verification.md."""
     times = [time for time, _ in runs.peaks(mover)[-4:]]
     assert 2.8 < 3.0 / (times[-1] - times[0]) < 3.3
 
 
-@pytest.mark.parametrize("mover", ["barrier", "pseudo-solid"])
+@pytest.mark.parametrize("mover", SMOOTH)
 def test_the_mesh_brings_no_oscillation_into_the_force(noise, mover):
     """The waves that there are, finer steps show too; the optimisation as published has 0.24 and 0.044 %."""
     largest, mean = noise(mover)
