@@ -87,7 +87,7 @@ def imports(session: nox.Session) -> None:
 
 @nox.session
 def demo(session: nox.Session) -> None:
-    """Run the Wall-Ramm flap for 400 steps at order 4 into results/demo."""
+    """Run the Wall-Ramm flap for 200 steps at order 4 into results/demo."""
     install_packages(session)
     settings = ["mesh.order=4", "time.end=1.0"]
     changes = [word for setting in settings for word in ("--set", setting)]

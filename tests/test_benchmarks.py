@@ -55,9 +55,18 @@ TINY = {
     "mesh_motion_histograms": ["--elements", "1", "--order", "2", "--steps", "10"],
     "mesh_motion_return": ["--cycles", "2", "--steps", "12", "--order", "2", "--elements", "1"],
     "mesh_motion_smoothness": ["--steps", "20", "--halvings", "1", "--order", "2"],
+    "wall_ramm": ["--orders", "2", "--end", "0.03", "--movers", "barrier", "angles, published"],
 }
 
-DRAWN = ("flag_oscillations", "fluid_work_precision", "mesh_motion", "mesh_motion_histograms", "mesh_motion_smoothness")
+DRAWN = (
+    "flag_oscillations",
+    "fluid_work_precision",
+    "mesh_motion",
+    "mesh_motion_histograms",
+    "mesh_motion_smoothness",
+    "wall_ramm",
+)
+HELPERS = ("_force_noise", "_precision", "_result", "_wall_ramm_pictures")
 PACKAGES = ("exact_fsi", "full_mesh_movers", "manufactured_flows", "motion_cases", "motion_contest")
 
 
@@ -91,7 +100,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str
     yield run
     sys.path.remove(str(FOLDER))
     for name in set(sys.modules) - before:
-        if name in ("_precision", "_result", *TINY) or name.partition(".")[0] in PACKAGES:
+        if name in (*HELPERS, *TINY) or name.partition(".")[0] in PACKAGES:
             sys.modules.pop(name)
 
 
@@ -252,3 +261,90 @@ def test_the_last_periods_are_cut_out(measured):
     t = np.linspace(0.0, 5.0, 501)
     start, stop = module._last_crossings(t, 0.3 + np.sin(2.0 * np.pi * (t - 0.123)))
     assert (start, stop) == pytest.approx((2.123, 4.123), abs=1e-4)
+
+
+@pytest.fixture
+def force_noise(measured):
+    measured("wall_ramm")
+    return importlib.import_module("_force_noise")
+
+
+def test_the_flap_of_the_paper_is_drawn(measured):
+    found = measured("wall_ramm")
+    assert [row["mover"] for row in found.result.rows] == ["barrier", "angles, published"]
+    assert all(row["steps"] == 6 and not row["failure"] for row in found.result.rows)
+    for name in ("wall_ramm", "wall_ramm_meshes", "wall_ramm_quality"):
+        assert (found.folder / f"{name}.png").stat().st_size > 10_000
+
+
+def test_the_flap_s_runs_are_not_made_again(measured, monkeypatch):
+    first = measured("wall_ramm")
+    module = importlib.import_module("wall_ramm")
+    monkeypatch.setattr(module, "measure", lambda *_: pytest.fail("made again"))
+    again = module.main([*TINY["wall_ramm"], "--json", str(first.folder / "wall_ramm.json")])
+    assert [dict(row) for row in again.rows] == [dict(row) for row in first.result.rows]
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.0025, 0.00125])
+def test_smooth_forces_have_no_noise(force_noise, dt):
+    """Harmonics of the flap to beyond its second mode (20 Hz), and a growing amplitude."""
+    t = np.arange(0.0, 7.5, dt)
+    force = (1.0 + 0.1 * t) * sum(
+        size * np.sin(2.0 * np.pi * f * t + f) for f, size in ((3.1, 1.0), (9.3, 0.3), (15.5, 0.1), (31.0, 0.01))
+    )
+    largest, mean = force_noise.noise(t, force, 2.5)
+    assert mean < largest < 2e-5
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.0025])
+def test_saw_teeth_are_measured_whole(force_noise, dt):
+    t = np.arange(0.0, 7.5, dt)
+    smooth = 40.0 * np.sin(2.0 * np.pi * 3.1 * t)
+    teeth = 0.01 * 40.0 * (-1.0) ** np.arange(len(t))
+    assert force_noise.noise(t, smooth + teeth, 2.5) == pytest.approx((0.01, 0.01), rel=0.03)
+
+
+def test_the_same_wave_is_the_same_noise_whatever_the_step(force_noise):
+    found = []
+    for dt in (0.005, 0.0025, 0.00125):
+        t = np.arange(0.0, 7.5, dt)
+        found.append(force_noise.noise(t, np.sin(2.0 * np.pi * 3.1 * t) + 0.02 * np.sin(2.0 * np.pi * 83.1 * t), 2.5))
+    assert [largest for largest, _ in found] == pytest.approx([0.02] * 3, rel=0.025)
+    assert [mean for _, mean in found] == pytest.approx([0.02 / np.sqrt(2.0)] * 3, rel=0.03)
+
+
+def test_a_single_jolt_is_found_where_it_is(force_noise):
+    t = np.arange(0.0, 7.5, 0.005)
+    force = np.sin(2.0 * np.pi * 3.1 * t)
+    force[1000] += 0.05
+    times, high = force_noise.high_passed(t, force)
+    k = int(np.abs(high).argmax())
+    assert times[k] == t[1000]
+    assert 0.02 < high[k] < 0.05
+
+
+def test_series_that_the_filter_cannot_take_are_refused(force_noise):
+    t = np.arange(0.0, 1.0, 0.005)
+    with pytest.raises(ValueError, match="expected equal ones"):
+        force_noise.high_passed(np.delete(t, 50), t[1:])
+    with pytest.raises(ValueError, match=r"cutoff 50 Hz with width 30: expected an end below 50 Hz, 1/\(2 dt\)"):
+        force_noise.high_passed(2.0 * t, t)
+    with pytest.raises(ValueError, match="20 steps; expected at least the 45 of the filter"):
+        force_noise.high_passed(t[:20], t[:20])
+
+
+def test_the_noisiest_block_vertex_is_told(measured):
+    measured("wall_ramm")
+    module = importlib.import_module("wall_ramm")
+    t = np.arange(0.0, 7.5, 0.005)
+    tip = 0.9 * np.sin(2.0 * np.pi * 3.2 * t)
+    vertices = np.zeros((len(t), 3, 2))
+    vertices[:, 0, 0] = 0.5 * tip
+    vertices[:, 1, 1] = 3.0 + 0.5 * tip + 0.009 * (-1.0) ** np.arange(len(t))
+    vertices[:, 2] = 7.0
+    assert module.mesh_noise(t, tip, vertices) == pytest.approx(0.01, rel=0.02)
+    found = module.figures({"t": t, "u_y": tip, "lift": tip, "vertices": vertices})
+    assert found["mesh noise %"] == pytest.approx(1.0, rel=0.02)
+    assert found["noise %"] < 0.01
+    assert found["u_y"] == pytest.approx(0.9, rel=0.01)
+    assert found["Hz"] == pytest.approx(3.2, rel=1e-3)
