@@ -19,7 +19,7 @@ HOFSI = "packages/hofsi-coupler"
 SOURCES = os.pathsep.join(str(ROOT / package / "src") for package in (HOBLOCK, HOFSI))
 
 # Scripts in benchmarks/ that take hours.
-STUDIES = ("flag_oscillations.py",)
+STUDIES = ("flag_oscillations.py", "wall_ramm.py")
 
 # Tools whose next release may judge the same code differently.
 RUFF = "ruff==0.17.6"
