@@ -33,7 +33,7 @@ def test_defaults_are_those_of_the_scene_format() -> None:
     assert dataclasses.astuple(CouplingSettings()) == ("iqn-ils", "extrapolated", 2, 1e-6, 1e-4, 50, 10, 1e-3, 0.5)
     assert dataclasses.astuple(NonlinearSettings()) == (1e-10, 25)
     assert dataclasses.astuple(LinearSettings()) == ("auto", 1e-10, True)
-    assert dataclasses.astuple(OutputSettings()) == (True, 10, True, None, None)
+    assert dataclasses.astuple(OutputSettings()) == (True, 10, True, None, None, False)
     assert dataclasses.astuple(BarrierSettings()) == ((), "auto", 4, "bar", 1.0, 1.0, 0.1)
     assert dataclasses.astuple(PseudoSolidSettings()) == ((), "auto", 4, -1.0, 0.3, False)
     assert AngleOptimisationSettings().power == 2
