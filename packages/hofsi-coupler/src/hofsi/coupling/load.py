@@ -7,14 +7,12 @@ from numpy.typing import NDArray
 
 from hofsi.coupling.interface import Interface
 from hofsi.solvers.fluid import FluidSolver, FluidState
-from hofsi.solvers.fluid_forces import NeighbourSides, boundary_sides
+from hofsi.solvers.fluid_forces import NeighbourSides, boundary_sides, interface_sides
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 __all__ = ["InterfaceLoad"]
-
-_NO_SIDES = np.zeros((0, 2), dtype=np.int64)
 
 
 class InterfaceLoad:
@@ -32,12 +30,10 @@ class InterfaceLoad:
     """
 
     def __init__(self, solver: FluidSolver, interface: Interface, held: Mask) -> None:
-        mesh = solver.mesh
-        dry = np.concatenate([mesh.edge_groups[name] for c in solver.fluid.boundaries for name in c.on] or [_NO_SIDES])
-        outer = boundary_sides(mesh)
-        sides = outer[np.isin(outer @ [4, 1], dry @ [4, 1])]
+        outer = boundary_sides(solver.mesh)
+        dry = outer[~np.isin(outer @ [4, 1], interface_sides(solver) @ [4, 1])]
         self._nodes = interface.fluid
-        self._neighbours = NeighbourSides(solver, sides.tolist(), interface.fluid[~held])
+        self._neighbours = NeighbourSides(solver, dry.tolist(), interface.fluid[~held])
         self._rows = np.searchsorted(interface.fluid, self._neighbours.nodes)
 
     @property
