@@ -276,7 +276,7 @@ def test_responses_are_solutions(monkeypatch):
     """With the fluid solved for in every iteration the same comes out, to the accuracy of the factors."""
     changes = ("[time]", "[coupling]\ntolerance = 1e-11\n[time]"), ("end = 0.5", "end = 0.2")
     problem, quick = run(FLAP, *changes)
-    assert problem.counts["fluid"].responses > 2 * len(quick)
+    assert problem.counts["fluid"].responses >= len(quick)
     monkeypatch.setattr(FluidStep, "respond", lambda step, velocity: None)
     problem, slow = run(FLAP, *changes)
     assert problem.counts["fluid"].responses == 0

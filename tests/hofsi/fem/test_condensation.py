@@ -155,3 +155,35 @@ def test_a_border_takes_a_factorisation_that_keeps_it(distorted):
     assert system.factorise_with_border(A).border_response.shape == (len(border), len(border))
     without = CondensedSystem(dofs, boundary, 2 * len(mesh.points), constraints, border=border)
     assert without.factorise_with_border(A).border_response is None  # SuperLU
+
+
+@pytest.mark.parametrize("with_places", [False, True])
+def test_flexibility_is_a_part_of_the_inverse(distorted, with_places):
+    rng = np.random.default_rng(29)
+    mesh = distorted(3)
+    dofs, boundary = numbering(mesh)
+    size = 2 * len(mesh.points)
+    constraints = supports(mesh, rolling=False)
+    places = mesh.points[mesh.cells].mean(axis=1) if with_places else None
+    system = CondensedSystem(dofs, boundary, size, constraints, places=places)
+    A = element_matrices(dofs, rng)
+    nodes = rng.permutation(np.unique(np.concatenate([mesh.edge_nodes("left"), mesh.edge_nodes("top")])))
+    unknowns = (2 * nodes[:, None] + np.arange(2)).ravel()
+    assert system.tells_flexibility(unknowns)
+    K = np.zeros((size, size))
+    for numbers, block in zip(dofs, A, strict=True):
+        K[np.ix_(numbers, numbers)] += block
+    free = ~constraints.fixed.ravel()
+    inverse = np.zeros_like(K)
+    inverse[np.ix_(free, free)] = np.linalg.inv(K[np.ix_(free, free)])
+    found = system.factorise(A).flexibility(unknowns)
+    np.testing.assert_allclose(found, inverse[np.ix_(unknowns, unknowns)], rtol=0.0, atol=1e-11 * np.abs(found).max())
+    assert not found[constraints.fixed.ravel()[unknowns]].any()
+
+
+def test_nodes_with_frames_of_their_own_do_not_tell_their_flexibility(distorted):
+    mesh = distorted(2)
+    dofs, boundary = numbering(mesh)
+    system = CondensedSystem(dofs, boundary, 2 * len(mesh.points), supports(mesh, rolling=True))
+    assert not system.tells_flexibility(2 * mesh.edge_nodes("top"))
+    assert system.tells_flexibility(2 * mesh.edge_nodes("left")[1:-1])

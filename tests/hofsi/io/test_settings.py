@@ -45,7 +45,7 @@ def test_a_steady_coupling_is_implicit() -> None:
 def test_coupling() -> None:
     values: dict[str, Any] = {
         "acceleration": "aitken", "geometry": "implicit", "predictor": 0, "tolerance": 1e-4, "max_iterations": 9,
-        "reuse": 0, "filter": 0.0, "relaxation": 1.0,
+        "reuse": 0, "filter": 0.0, "relaxation": 1.0, "condensed": False,
     }  # fmt: skip
     assert read_coupling(Table(values), UNSTEADY) == CouplingSettings(**values)
 

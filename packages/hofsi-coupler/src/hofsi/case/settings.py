@@ -96,6 +96,9 @@ class CouplingSettings:
         Of the QR decomposition of the secants, and of the singular values of IMVJ's Jacobian; 0 keeps all of them.
     relaxation : float
         First relaxation factor, in (0, 1].
+    condensed : bool
+        Whether the fluid is condensed to the interface, where it can be: the solid then finds its displacement together
+        with the load's answer to it.
     """
 
     acceleration: Literal["iqn-ils", "imvj", "aitken", "constant"] = "iqn-ils"
@@ -107,6 +110,7 @@ class CouplingSettings:
     reuse: int = 10
     filter: float = 1e-3
     relaxation: float = 0.5
+    condensed: bool = True
 
 
 @dataclass(frozen=True)

@@ -103,7 +103,8 @@ def _left(residuals: Residuals, test: ConvergenceTest) -> str:
 
 def _more(verdict: Verdict, settings: CouplingSettings) -> list[str]:
     """Settings that may help."""
-    ways = [] if settings.acceleration in ("iqn-ils", "imvj") else ['set coupling.acceleration = "iqn-ils"']
+    ways = [] if settings.condensed else ["leave coupling.condensed on"]
+    ways += [] if settings.acceleration in ("iqn-ils", "imvj") else ['set coupling.acceleration = "iqn-ils"']
     return ways if verdict else [*ways, "raise coupling.max_iterations"]
 
 

@@ -20,6 +20,7 @@ from hofsi.errors import ConvergenceError, CouplingError
 from hofsi.motion import MeshState
 from hofsi.records import CouplingRecord
 from hofsi.solvers.fluid import FluidState
+from hofsi.solvers.load_response import LoadResponse
 from hofsi.solvers.solid import SolidSolver, SolidStep
 
 Array = NDArray[np.float64]
@@ -41,11 +42,18 @@ class Flow:
         Whether the flow itself has.
     finish : callable
         Makes the flow's state, whose load confirms ``force``, and its mesh.
+    stiffness : callable
+        Makes the derivative F of the force by the displacement of the interface, shape (2k, 2k), or None if the flow
+        does not tell it.
+    affine : bool
+        Whether F holds for all displacements.
     """
 
     force: Array
     converged: bool
     finish: Callable[[], tuple[FluidState, MeshState]]
+    stiffness: Callable[[], Array | None] = lambda: None
+    affine: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +109,7 @@ class FixedPoint:
         self.accelerator = accelerator
         self.test = ConvergenceTest(settings.tolerance, settings.force_tolerance)
         self.believing = True
+        self._condensing = settings.condensed and solid.takes_response(interface.solid)
 
     def solve(
         self,
@@ -152,13 +161,16 @@ class FixedPoint:
         self.believing = True
         inner = min(self._solid.nonlinear.tolerance, _INNER * settings.tolerance)
         displacement: Array | None = None
+        response: LoadResponse | None = None
         residuals, watch = Residuals(np.inf, np.inf), StallWatch()
         verdict: Verdict = ""
         for iteration in range(1, settings.max_iterations + 1):
             now = flow(d)
             try:
                 with self._clock.phase("solid"):
-                    displacement = solid_step.solve(share * self._nodal(now.force), displacement, tolerance=inner)
+                    load = share * self._nodal(now.force)
+                    response = None if share != 1.0 else self._response(now, d, response)
+                    displacement = solid_step.solve(load, displacement, tolerance=inner, response=response)
             except ConvergenceError as error:
                 raise solid_failure(error, watch, where) from error
             image = displacement[self._interface.solid]
@@ -177,9 +189,19 @@ class FixedPoint:
             verdict = watch.observe(image, residual, excess)
             if verdict:
                 break
+            if response is not None and now.affine:
+                d = image
+                continue
             with self._clock.phase("coupling"):
                 d = self.accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
         raise coupling_failure(verdict, residuals, self.test, watch, settings, where, steady=steady)
+
+    def _response(self, flow: Flow, d: Array, last: LoadResponse | None) -> LoadResponse | None:
+        """How the load answers while the solid finds its displacement, if the fluid tells and the solid takes it."""
+        if not self._condensing:
+            return None
+        matrix = last.matrix if last is not None and flow.affine else flow.stiffness()
+        return None if matrix is None else LoadResponse(self._interface.solid, matrix, d)
 
     def _nodal(self, force: Array) -> Array:
         nodal = np.zeros(self._solid.mesh.points.shape)

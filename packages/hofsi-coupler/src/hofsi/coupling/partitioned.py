@@ -136,7 +136,7 @@ class CoupledMarch:
         def flow(d: Array) -> Flow:
             nonlocal last
             last, moved = fixed or begin(d, last)
-            return self._flow(last, moved, c[0] * d + rest, _NEWTON if implicit else None)
+            return self._flow(last, moved, c[0] * d + rest, _NEWTON if implicit else None, rate=float(c[0]))
 
         self._iteration.test.begin_step(state.interface[0], self._load.evaluate(fluid))
         found = self._iteration.solve(predicted, flow, solid_step, f"coupling, t = {time:g}")
@@ -215,8 +215,23 @@ class CoupledMarch:
         d = displacement[self._interface.solid]
         return self._iteration.solve(d, flow, solid_step, "steady coupling", share=share, steady=True)
 
-    def _flow(self, step: FluidStep, mesh: MeshState, velocity: Array, max_iterations: int | None = None) -> Flow:
-        """The flow of a step for a velocity of the interface: solved for, or the step's response to it."""
+    def _flow(
+        self,
+        step: FluidStep,
+        mesh: MeshState,
+        velocity: Array,
+        max_iterations: int | None = None,
+        *,
+        rate: float = 0.0,
+    ) -> Flow:
+        """The flow of a step for a velocity of the interface: solved for, or the step's response to it.
+
+        The velocity changes with the displacement at this rate.
+        """
+
+        def stiffness() -> Array | None:
+            matrix = step.interface_matrix
+            return None if matrix is None else -rate * matrix
 
         def solve() -> tuple[FluidState, MeshState]:
             with self._clock.phase("fluid"):
@@ -226,10 +241,11 @@ class CoupledMarch:
         with self._clock.phase("fluid"):
             reaction = step.respond(velocity) if self._iteration.believing else None
         if reaction is not None:
-            return Flow(-reaction, True, solve)
+            return Flow(-reaction, True, solve, stiffness, affine=True)
         state, mesh = solve()
+        affine = self._iteration.believing and step.interface_matrix is not None
         with self._clock.phase("fluid"):
-            return Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh))
+            return Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh), stiffness, affine)
 
 
 def _parts(state: State) -> tuple[FluidState, SolidState, MeshState]:

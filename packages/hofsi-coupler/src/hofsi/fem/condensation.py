@@ -119,6 +119,7 @@ class CondensedSystem:
         number[self.border] = len(self.unknowns) + np.arange(len(self.border))
         self.with_border = number[dofs[:, :boundary]]
         self._rotated, self._rotation = self._rotations(constraints)
+        self._turned_nodes = constraints.rotated
 
     @cached_property
     def pattern(self) -> MatrixPattern:
@@ -148,6 +149,10 @@ class CondensedSystem:
             for b in range(2):
                 R[row, pair[a], pair[b]] = frames[:, a, b]
         return elements, R
+
+    def tells_flexibility(self, unknowns: Index) -> bool:
+        """Whether factors have `CondensedFactor.flexibility`: direct ones, where no node has a frame of its own."""
+        return self._solver is DirectFactor and not np.isin(unknowns // 2, self._turned_nodes).any()
 
     def solved_by(self, solver: Callable[[sp.csc_matrix], Solver]) -> CondensedSystem:
         """Return the same pattern with another solver of condensed matrices."""
@@ -302,6 +307,28 @@ class CondensedFactor:
         solution = self.factor.solve(assemble_vector(skeleton, system.rotate(on_boundary), len(system.unknowns)))
         padded = np.append(solution, 0.0)  # number -1 reads the zero of a constrained unknown
         return self._everywhere(system.rotate_back(padded[skeleton]), z)
+
+    def flexibility(self, unknowns: Index) -> Array:
+        """What loads on some unknowns do to these unknowns, shape (k, k): their part of the inverse.
+
+        Only where the system has it, see `CondensedSystem.tells_flexibility`.
+
+        Parameters
+        ----------
+        unknowns : ndarray, shape (k,)
+            Global numbers, on the elements' boundaries. Constrained ones do not move.
+        """
+        system = self.system
+        assert isinstance(self.factor, CheckedSolver)
+        place = np.searchsorted(system.unknowns, unknowns)
+        free = place < len(system.unknowns)
+        free[free] = system.unknowns[place[free]] == unknowns[free]
+        own, k = place[free], np.flatnonzero(free)
+        loads = np.zeros((len(system.unknowns), len(own)))
+        loads[own, np.arange(len(own))] = 1.0
+        result = np.zeros((len(unknowns), len(unknowns)))
+        result[np.ix_(k, k)] = self.factor.substitute(loads)[own]
+        return result
 
     @property
     def border_response(self) -> Array | None:

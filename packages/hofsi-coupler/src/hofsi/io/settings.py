@@ -128,6 +128,7 @@ def read_coupling(table: Table, time: TimeSettings) -> CouplingSettings:
         reuse=table.integer("reuse", default.reuse, minimum=0),
         filter=table.number("filter", default.filter, minimum=0.0, below=1.0),
         relaxation=table.number("relaxation", default.relaxation, above=0.0, maximum=1.0),
+        condensed=table.boolean("condensed", default.condensed),
     )
     table.finish()
     return settings

@@ -224,13 +224,14 @@ class MultifrontalFactor:
         return float(np.bincount(cells.ravel() + 1, weights=rows.ravel(), minlength=size + 1)[1:].max(initial=0.0))
 
     def substitute(self, b: Array) -> Array:
-        """Solve once, without a look at the residual."""
-        x = np.append(b, np.zeros(self._tree.kept))
+        """Solve once, without a look at the residual, for one right-hand side (n,) or several (n, k)."""
+        nothing = np.zeros((self._tree.kept, *b.shape[1:]))
+        x = np.concatenate([b, nothing])
         for block in self._blocks:
             y = lapack.dgetrs(block.lu, block.pivots, x[block.own])[0]
             x[block.own] = y
             x[block.left] -= block.below @ y
-        return self._back(x, np.zeros(self._tree.kept))
+        return self._back(x, nothing)
 
     def extended(self, kept: Array) -> Array:
         """The other unknowns for given kept ones, while nothing else acts: all of them, shape (n,)."""

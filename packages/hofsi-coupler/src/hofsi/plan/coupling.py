@@ -74,3 +74,8 @@ def coupling_items(case: Case, meshes: Meshes) -> Iterator[Item]:
         yield Item("geometry", "implicit: a new fluid mesh in every coupling iteration")
     else:
         yield Item("geometry", "extrapolated: one fluid mesh a step")
+        if settings.condensed:
+            yield Item(
+                "condensation",
+                "the fluid is condensed to the interface and the solid solved together with it, where both solve directly",
+            )

@@ -143,6 +143,11 @@ class FluidStep:
         self._equations.counts.responses += 1
         return self._response.reaction(interface)
 
+    @property
+    def interface_matrix(self) -> Array | None:
+        """What velocities of the interface (2k,) add to the reaction there, shape (2k, 2k); None as in `respond`."""
+        return None if self._response is None else self._response.matrix
+
     def _solve_linear(self, unknowns: Array, interface: Array) -> Array:
         self.converged = True
         if self._response is not None:

@@ -31,11 +31,11 @@ class InterfaceResponse:
     """
 
     def __init__(self, factor: CondensedFactor, matrix: Array, velocity: Array, reaction: Array) -> None:
-        self._factor, self._matrix, self._velocity, self._reaction = factor, matrix, velocity.copy(), reaction
+        self._factor, self.matrix, self._velocity, self._reaction = factor, matrix, velocity.copy(), reaction
 
     def reaction(self, velocity: Array) -> Array:
         """Reaction (k, 2) to another velocity (k, 2)."""
-        change = self._matrix @ (velocity - self._velocity).ravel()
+        change = self.matrix @ (velocity - self._velocity).ravel()
         return np.asarray(self._reaction + change.reshape(-1, 2))
 
     def change(self, velocity: Array) -> Array:

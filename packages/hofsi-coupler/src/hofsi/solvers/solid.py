@@ -12,6 +12,7 @@ from hofsi import case
 from hofsi.counts import Counts
 from hofsi.errors import ConvergenceError, NewtonError
 from hofsi.linear.checked import CheckedSolver
+from hofsi.solvers.load_response import LoadResponse, unknowns_of
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_newton import SolidNewton, Tangent
 from hofsi.solvers.solid_rest import check_held
@@ -27,6 +28,7 @@ from hofsi.timestepping.second_order import (
 )
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 __all__ = ["SolidMemory", "SolidSolver", "SolidState", "SolidStep"]
 
@@ -137,6 +139,10 @@ class SolidSolver:
         start = self.initial_state() if state is None else state
         return SolidStep(self, start, None, (), start.time)
 
+    def takes_response(self, nodes: Index) -> bool:
+        """Whether loads may answer to displacements of some nodes: not with iterative solvers or inclined rollers."""
+        return self.system.tells_flexibility(unknowns_of(nodes))
+
     def keep(self, tangent: Tangent | None) -> None:
         """Keep a tangent for later steps if it holds for them: if all solids are linear."""
         if self.equations.linear:
@@ -196,6 +202,7 @@ class SolidStep:
         point = time if motion is None else time - (1.0 - motion.share) * steps[0]
         self._dead = equations.loads.dead(point)
         self._load: Array | None = None
+        self._response: tuple[Array, Array] | None = None  # matrices of one at the end of the step and at the point
         gradient = equations.gradient(state.displacement)
         factor = 0.0 if motion is None else motion.mass_factor
         self._newton = SolidNewton(
@@ -218,9 +225,18 @@ class SolidStep:
         """The supports at the end of the step hold there, whatever that means for the point of equilibrium."""
         if self._motion is None:
             return self.solver.supports.impose(point, self.time)
-        return self._motion.point(self.solver.supports.impose(self._motion.end(point), self.time))
+        end = self._motion.end(point)
+        change = self.solver.supports.impose(end, self.time) - end
+        return point + self._motion.share * change  # exactly the point where nothing is held
 
-    def solve(self, load: Array | None = None, guess: Array | None = None, *, tolerance: float | None = None) -> Array:
+    def solve(
+        self,
+        load: Array | None = None,
+        guess: Array | None = None,
+        *,
+        tolerance: float | None = None,
+        response: LoadResponse | None = None,
+    ) -> Array:
         """Find the displacement under a load.
 
         Later calls, with other loads, reuse the tangent's factors as long as they serve.
@@ -230,9 +246,11 @@ class SolidStep:
         load : ndarray, shape (n, 2), optional
             Nodal forces of the fluid, besides the loads of the case.
         guess : ndarray, shape (n, 2), optional
-            Where to start; by default the state at the start of the step.
+            Where to start; by default what the motion at the start of the step lets expect.
         tolerance : float, optional
             Instead of the case's.
+        response : LoadResponse, optional
+            What the load gains with the displacement found; see `SolidSolver.takes_response`.
 
         Returns
         -------
@@ -245,9 +263,10 @@ class SolidStep:
         """
         self._load = load
         force, motion = self._force(load), self._motion
-        start = self.state.displacement if guess is None else guess
+        start = self._expected() if guess is None else guess
         start = start if motion is None else motion.point(start)
         tolerance = self.solver.nonlinear.tolerance if tolerance is None else tolerance
+        self._newton.response = None if response is None else self._at_point(response)
         try:
             result = self._newton.solve(start, force, tolerance)
         except ConvergenceError:
@@ -256,6 +275,19 @@ class SolidStep:
             result = self._newton.solve_by_parts(self.state.displacement, force, tolerance)
         self.solver.keep(self._newton.tangent)
         return result if motion is None else motion.end(result)
+
+    def _expected(self) -> Array:
+        """The displacement at the end of the step that the motion at its start lets expect."""
+        state = self.state
+        if self._motion is None:
+            return state.displacement
+        h = self._steps[0]
+        expected = state.displacement + h * state.velocity
+        if state.accelerations:
+            expected += 0.5 * h * h * state.accelerations[0]
+        elif len(state.velocities) > 1 and len(self._steps) > 1:
+            expected += 0.5 * h * h / self._steps[1] * (state.velocities[0] - state.velocities[1])
+        return expected
 
     def reaction(self, displacement: Array, load: Array | None = None) -> Array:
         """Forces of the supports on the solid, shape (n, 2): internal force + inertia - loads where it is held.
@@ -310,14 +342,28 @@ class SolidStep:
         accelerations = () if self.solver.scheme.name == "bdf2" else (motion.acceleration(displacement),)
         return SolidState(displacements, velocities, self.time, reaction, accelerations, loads, self._steps[0])
 
+    def _at_point(self, response: LoadResponse) -> LoadResponse:
+        """The response of a load at the end of the step as one at the point of equilibrium."""
+        motion = self._motion
+        if motion is None or motion.share == 1.0:
+            return response
+        share = motion.share
+        about = share * response.about + (1.0 - share) * motion.start[response.nodes]
+        if self._response is None or self._response[0] is not response.matrix:
+            self._response = response.matrix, self._load_weights()[0] / share * response.matrix
+        return LoadResponse(response.nodes, self._response[1], about)
+
     def _force(self, load: Array | None) -> Array:
         """Nodal forces at the point of equilibrium for a load of the fluid at the end of the step."""
         if load is None:
             return self._dead
+        loads = load, *self.state.loads
+        return np.asarray(self._dead + sum(w * f for w, f in zip(self._load_weights(), loads, strict=False)))
+
+    def _load_weights(self) -> tuple[float, ...]:
+        """Shares of the fluid's loads at the ends of this step and of those before at the point of equilibrium."""
         share = 1.0 if self._motion is None else self._motion.share
         before = self.state.loads
         if share == 1.0 or not before:
-            return self._dead + load
-        ratio = self.state.step / self._steps[0] if len(before) > 1 else 0.0
-        weights = load_weights(share, ratio)
-        return np.asarray(self._dead + sum(w * f for w, f in zip(weights, (load, *before), strict=False)))
+            return (1.0,)
+        return load_weights(share, self.state.step / self._steps[0] if len(before) > 1 else 0.0)

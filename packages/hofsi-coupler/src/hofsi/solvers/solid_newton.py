@@ -12,6 +12,7 @@ from hofsi.case import NonlinearSettings
 from hofsi.counts import Counts
 from hofsi.errors import ConvergenceError, NewtonError
 from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.solvers.load_response import LoadResponse, RespondingSystem, unknowns_of
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_loads import FollowerPressure
 from hofsi.solvers.solid_supports import SolidSupports
@@ -99,6 +100,8 @@ class SolidNewton:
     ----------
     tangent : Tangent or None
         The one at hand.
+    response : LoadResponse or None
+        What the force gains with the displacement, besides.
 
     References
     ----------
@@ -130,6 +133,8 @@ class SolidNewton:
         self._inertia = None if history is None else equations.mass @ history
         self._stress = stress
         self.tangent = tangent
+        self.response: LoadResponse | None = None
+        self._responding: tuple[LoadResponse, Tangent, RespondingSystem] | None = None
         self._floor: float | None = None
 
     def residual(self, displacement: Array, force: Array) -> Array:
@@ -215,10 +220,12 @@ class SolidNewton:
             stress = eq.stress(gradient) if start is None else eq.mean_stress(gradient, start)
             internal = eq.internal_force(gradient, stress)
             external = force
-            if self._pressures:
+            if self._pressures or self.response is not None:
                 external = force.copy()
                 for pressure in self._pressures:
                     pressure.add_force(external, displacement)
+                if self.response is not None:
+                    self.response.add_force(external, displacement)
             residual = internal - external
             scale = max(float(np.linalg.norm(internal)), float(np.linalg.norm(external)))
             if self._inertia is not None:
@@ -297,9 +304,27 @@ class SolidNewton:
         r = offset - point.residual
         if movement is not None:
             r -= self._equations.applied(tangent.K, movement)
-        increment = tangent.factor.solve(self._equations.shared(r)).reshape(-1, 2)
+            if self.response is not None:
+                nodes = self.response.nodes
+                r[nodes] += self.response.of(movement[nodes])
+        increment = self._solved(tangent, r)
         self._counts.solves += 1
         return increment if movement is None else increment + movement
+
+    def _solved(self, tangent: Tangent, force: Array) -> Array:
+        """The increment of a tangent, and of the response of the load if it has one, for nodal forces (n, 2)."""
+
+        def alone(r: Array) -> Array:
+            return tangent.factor.solve(self._equations.shared(r)).reshape(-1, 2)
+
+        response = self.response
+        if response is None:
+            return alone(force)
+        made = self._responding
+        if made is None or made[0].matrix is not response.matrix or made[1] is not tangent:
+            C = tangent.factor.flexibility(unknowns_of(response.nodes))
+            made = self._responding = response, tangent, RespondingSystem(alone, C, response)
+        return made[2].solve(force)
 
     def _error(self, message: str, reason: str) -> NewtonError:
         return NewtonError(message, reason, f"solid, t = {self._time:g}")
