@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import lapack
+from scipy.linalg import blas, lapack
 
 from hofsi.errors import LinearSolverError
 from hofsi.linear.checked import CheckedSolver
@@ -180,7 +180,8 @@ class MultifrontalFactor:
                     C = waiting.pop(child)
                     for rows, there in runs:
                         for columns, beyond in runs:
-                            F[rows, columns] += C[there, beyond]
+                            here = F[rows, columns]
+                            np.add(here, C[there, beyond], out=here)
             else:
                 start = tree.leaf_starts[k]
                 F = leaves[start : start + n * n].reshape(n, n).T
@@ -208,9 +209,7 @@ class MultifrontalFactor:
         beside = lapack.dgetrs(lu, pivots, F[:m, m:])[0]
         below = F[m:, :m].copy(order="F")
         self._blocks.append(_Block(lu, pivots, below, beside, front.unknowns[:m], front.unknowns[m:]))
-        rest = below @ beside
-        np.subtract(F[m:, m:], rest, out=rest)
-        return np.asarray(rest)
+        return np.asarray(blas.dgemm(-1.0, below, beside, 1.0, F[m:, m:]))
 
     @property
     def entries(self) -> int:

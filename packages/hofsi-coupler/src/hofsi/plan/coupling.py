@@ -77,5 +77,5 @@ def coupling_items(case: Case, meshes: Meshes) -> Iterator[Item]:
         if settings.condensed:
             yield Item(
                 "condensation",
-                "the fluid is condensed to the interface and the solid solved together with it, where both solve directly",
+                "fluid condensed to the interface and the solid solved together with it, where both solve directly",
             )
