@@ -17,10 +17,9 @@ OUTPUT = ("[output]", "[output]\nfields = false\nplots = false")
 
 # Changes and parts of the message of scenes that end with exit code 3.
 GIVEN_UP = {
-    "an absurd inflow": ([("U = 1.5", "U = 1e4")], ["t = 0.00625: ", "That was the smallest step"]),
-    "an inflow that bends the solid through the mesh": (
-        [(TIME, "dt = 2.0\nend = 20.0"), ("U = 1.5", "U = 100")],
-        ["fluid mesh, t = 0.25: The boundary "],
+    "an absurd inflow": (
+        [("U = 1.5", "U = 1e4")],
+        ["t = 0.00625: the interface ends ", "from where it was predicted", "That was the smallest step"],
     ),
     "an inflow that breaks the solid at large steps": (
         [(TIME, "dt = 2.0\nend = 20.0"), ("U = 1.5", "U = 40"), (COUPLING, "[coupling]\ncondensed = false")],
@@ -51,8 +50,8 @@ GIVEN_UP = {
         ],
     ),
     "too few iterations": (
-        [(COUPLING, "[coupling]\nmax_iterations = 2")],
-        ["coupling, t = ", "not converged after 2 iterations", "Raise coupling.max_iterations"],
+        [(COUPLING, "[coupling]\ncondensed = false\nmax_iterations = 2")],
+        ["coupling, t = ", "not converged after 2 iterations", "raise coupling.max_iterations"],
     ),
 }
 # Changes and messages of scenes that are bad input.

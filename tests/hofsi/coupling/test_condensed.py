@@ -67,3 +67,15 @@ def test_where_a_field_is_solved_iteratively_the_acceleration_takes_over():
     reference, _, _ = march("fsi3", *FLAG, *TIGHT, "time.end=0.025")
     assert iterations.max() > 4
     assert off(found, reference) <= 1e-6
+
+
+@pytest.mark.parametrize("density", [1.1, 0.01])
+def test_implicit_geometry_gains_by_it_too(density):
+    common = [*PULSE, "coupling.geometry=implicit", 'coupling.acceleration="iqn-ils"', f"solid[0].density={density}"]
+    found, iterations, _ = march("pressure_pulse", *common)
+    assert len(found) == 10
+    assert iterations.mean() <= 5.0
+    if density > 1.0:
+        reference, more, _ = march("pressure_pulse", *common, "coupling.condensed=false")
+        assert more.mean() > 1.5 * iterations.mean()
+        assert np.abs(found[:, 0] - reference[:, 0]).max() <= 1e-5 * np.abs(reference[:, 0]).max()

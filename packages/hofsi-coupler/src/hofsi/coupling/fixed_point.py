@@ -93,6 +93,8 @@ class FixedPoint:
     test : ConvergenceTest
     believing : bool
         Whether responses of the fluid serve; False in a step in which its fields have told another force.
+    condensing : bool
+        Whether the solid takes the load's answer into its solution, where the fluid tells it.
     """
 
     def __init__(
@@ -109,7 +111,7 @@ class FixedPoint:
         self.accelerator = accelerator
         self.test = ConvergenceTest(settings.tolerance, settings.force_tolerance)
         self.believing = True
-        self._condensing = settings.condensed and solid.takes_response(interface.solid)
+        self.condensing = settings.condensed and solid.takes_response(interface.solid)
 
     def solve(
         self,
@@ -189,7 +191,7 @@ class FixedPoint:
             verdict = watch.observe(image, residual, excess)
             if verdict:
                 break
-            if response is not None and now.affine:
+            if response is not None and (now.affine or iteration == 1):
                 d = image
                 continue
             with self._clock.phase("coupling"):
@@ -198,9 +200,11 @@ class FixedPoint:
 
     def _response(self, flow: Flow, d: Array, last: LoadResponse | None) -> LoadResponse | None:
         """How the load answers while the solid finds its displacement, if the fluid tells and the solid takes it."""
-        if not self._condensing:
+        if not self.condensing:
             return None
         matrix = last.matrix if last is not None and flow.affine else flow.stiffness()
+        if matrix is None and last is not None:
+            matrix = last.matrix  # a flow that does not tell it answers about as the one before it
         return None if matrix is None else LoadResponse(self._interface.solid, matrix, d)
 
     def _nodal(self, force: Array) -> Array:

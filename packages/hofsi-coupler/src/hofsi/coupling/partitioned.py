@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi import case
+from hofsi.case import Convection
 from hofsi.clock import Clock
 from hofsi.coupling.coupled_memory import CoupledMemory
 from hofsi.coupling.fixed_point import FixedPoint, Flow, Solution
+from hofsi.coupling.gap import InterfaceGap
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.interface_balance import InterfaceBalance
 from hofsi.coupling.load import InterfaceLoad
@@ -69,6 +71,7 @@ class CoupledMarch:
         self._load = InterfaceLoad(fluid, interface, held)
         self._balance = InterfaceBalance(fluid, interface, self._load)
         self._iteration = FixedPoint(self._load, solid, interface, settings, accelerator, clock)
+        self._gap = InterfaceGap(motion.reference.mesh, interface.fluid)
         self._regenerated = 0  # blocks, in the meshes of the step at hand
 
     def initial(self, time: float) -> State:
@@ -115,34 +118,52 @@ class CoupledMarch:
         # The load at the start is not known, and the error of the first step, which is of first order, fades from the
         # differences of displacements by 1/3 a step. Other schemes than BDF2 would remember both.
         solid_step = self._solid.begin_step(solid, steps, time, starting=len(state.interface) < _HISTORY)
-        implicit = self._settings.geometry == "implicit"
+        implicit, where = self._settings.geometry == "implicit", f"coupling, t = {time:g}"
         convection = self._fluid.fluid.convection_of_steps(self._settings)
 
-        responding = not implicit and not self._load.needs_fields
-
-        def begin(d: Array, before: FluidStep | None) -> tuple[FluidStep, MeshState]:
+        def begin(d: Array, convection: Convection, *, responding: bool) -> tuple[FluidStep, MeshState]:
             moved = self._move(mesh, d, time)
             with self._clock.phase("fluid"):
                 step = self._fluid.begin_step(
                     fluid, moved.mesh.points, steps, time, convection=convection, responding=responding
                 )
-                if before is not None:
-                    step.continue_from(before)
                 return step, moved
 
-        fixed = None if implicit else begin(predicted, None)
+        fixed = None if implicit else begin(predicted, convection, responding=True)
         last: FluidStep | None = None
 
         def flow(d: Array) -> Flow:
             nonlocal last
-            last, moved = fixed or begin(d, last)
-            return self._flow(last, moved, c[0] * d + rest, _NEWTON if implicit else None, rate=float(c[0]))
+            velocity, rate = c[0] * d + rest, float(c[0])
+            if fixed is not None:
+                return self._checked(self._flow(*fixed, velocity, rate=rate), d - predicted, where)
+            if last is None and self._iteration.condensing:
+                # A linear step to begin with: where the interface goes to, about, and how the load answers.
+                last, moved = begin(d, "linearised", responding=True)
+                return replace(self._flow(last, moved, velocity, rate=rate), converged=False, affine=False)
+            step, moved = begin(d, convection, responding=False)
+            if last is not None:
+                with self._clock.phase("fluid"):
+                    if last.interface_matrix is not None:
+                        last.solve(velocity)
+                    step.continue_from(last)
+            last = step
+            return self._flow(step, moved, velocity, _NEWTON, rate=rate)
 
         self._iteration.test.begin_step(state.interface[0], self._load.evaluate(fluid))
-        found = self._iteration.solve(predicted, flow, solid_step, f"coupling, t = {time:g}")
+        found = self._iteration.solve(predicted, flow, solid_step, where)
         reached = self._reached(found, solid_step, state.interface)
         with self._clock.phase("coupling"):
             return reached, self._balance.completed(found.record, state, reached, steps[0])
+
+    def _checked(self, flow: Flow, gap: Array, where: str) -> Flow:
+        """A flow that may be completed only if its mesh is near enough."""
+
+        def finish() -> tuple[FluidState, MeshState]:
+            self._gap.check(gap, where)
+            return flow.finish()
+
+        return replace(flow, finish=finish)
 
     def _reached(self, found: Solution, solid_step: SolidStep, interface: tuple[Array, ...]) -> State:
         """The state of a solution, after steps with these displacements of the interface."""
@@ -239,11 +260,12 @@ class CoupledMarch:
                 return step.accept(), mesh
 
         with self._clock.phase("fluid"):
-            reaction = step.respond(velocity) if self._iteration.believing else None
+            telling = self._iteration.believing and not self._load.needs_fields
+            reaction = step.respond(velocity) if telling else None
         if reaction is not None:
             return Flow(-reaction, True, solve, stiffness, affine=True)
         state, mesh = solve()
-        affine = self._iteration.believing and step.interface_matrix is not None
+        affine = telling and step.interface_matrix is not None
         with self._clock.phase("fluid"):
             return Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh), stiffness, affine)
 

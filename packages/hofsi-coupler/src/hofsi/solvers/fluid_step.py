@@ -158,14 +158,21 @@ class FluidStep:
                 self._residual = residual
                 self._respond_from(changed, interface)
                 return changed
+        unknowns = self._corrected(unknowns)
+        if not self._settled:
+            unknowns = self._settle(unknowns)
+            if self._responding and self._factor is None:
+                unknowns = self._corrected(unknowns)  # the factors of what is linearised about now tell the response
+        self._respond_from(unknowns, interface)
+        return unknowns
+
+    def _corrected(self, unknowns: Array) -> Array:
+        """Solve the linear equations at hand, from some unknowns on; their residual is kept."""
         if self._factor is None:
             self._factor = self._factorised()
         unknowns = unknowns + self._factor.solve(self._linear_residual(unknowns))
         self._equations.counts.solves += 1
         self._residual = self._linear_residual(unknowns)
-        if not self._settled:
-            unknowns = self._settle(unknowns)
-        self._respond_from(unknowns, interface)
         return unknowns
 
     def _respond_from(self, unknowns: Array, interface: Array) -> None:
