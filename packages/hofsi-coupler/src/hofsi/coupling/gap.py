@@ -19,8 +19,9 @@ _PART = 0.5  # of an element beside the interface
 class InterfaceGap:
     """Refuses steps whose interface ends far from the mesh.
 
-    With extrapolated geometry the mesh stands where the interface was predicted to be. The gap is of third order in the step and usually a small part of its increment. If it is as large as the elements
-    beside the interface the flow that was found is that around another body.
+    With extrapolated geometry the mesh stands where the interface was predicted to be. The gap is of third order in the
+    step and usually a small part of its increment. If it is as large as the elements beside the interface, the flow
+    that was found is that around another body.
 
     Parameters
     ----------
@@ -50,9 +51,10 @@ class InterfaceGap:
         worst = int(np.argmax(distance / self._size))
         x, y = self._points[worst]
         raise CouplingError(
-            f"the interface ends {distance[worst]:.3g} from where it was predicted and the mesh was made, at the point that "
-            f"was at ({x:.6g}, {y:.6g}); expected less than half of the elements' size there, {self._size[worst]:.3g}. Take "
-            'smaller time steps, let loads begin less suddenly, or set coupling.geometry = "implicit".',
+            f"the interface ends {distance[worst]:.3g} from where it was predicted and the mesh was made, at the point "
+            f"that was at ({x:.6g}, {y:.6g}); expected less than half of the elements' size there, "
+            f"{self._size[worst]:.3g}. Take smaller time steps, let loads begin less suddenly, or set "
+            'coupling.geometry = "implicit".',
             "geometry",
             where,
         )
