@@ -127,12 +127,12 @@ def shown(row: Mapping[str, Any]) -> dict[str, object]:
         line[name] = f"{mean:.{digits}f} ± {amplitude:.{digits}f} ({100 * off[f'{name} amplitude']:+.1f} %)"
     line["Hz"] = f"{_number(row['frequency']):.3f} ({100 * off['frequency']:+.1f} %)"
     line["iterations"] = f"{row['iterations']:.2f}"
-    line["seconds"] = f"{row['seconds']:.0f}"
+    line["seconds"] = f"{row['seconds']:.0f} ({row['CPU s']:.0f} CPU)"
     return line
 
 
 def draw_errors(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Errors of the amplitudes against seconds."""
+    """Errors of the amplitudes against seconds of the processor, which other jobs on the machine change the least."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -147,8 +147,8 @@ def draw_errors(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
             for row in own:
                 off = 100.0 * abs(errors(row)[f"{name} amplitude"])
                 label = " ".join(part for part in (str(row["scene"]), str(row["changes"])) if part)
-                axis.plot(row["seconds"], off, "o", label=label)
-            axis.set(xscale="log", title=f"{scene}: amplitude of {name}", xlabel="seconds", ylabel="difference in %")
+                axis.plot(row["CPU s"], off, "o", label=label)
+            axis.set(xscale="log", title=f"{scene}: amplitude of {name}", xlabel="CPU seconds", ylabel="difference in %")
             axis.set_ylim(bottom=0.0)
         line[-1].legend(fontsize=6, loc="upper right")
     figure.savefig(path, dpi=130)

@@ -19,7 +19,7 @@ from hofsi.simulate import simulate
 from hofsi.solvers.solid import SolidSolver
 from hofsi.solvers.solid_forces import SolidForce
 
-CSM1 = Path(__file__).parents[3] / "examples" / "csm1.toml"
+CSM1 = Path(__file__).parents[4] / "examples" / "csm1.toml"
 SIDES = ("bottom", "right", "top", "left")
 
 
