@@ -148,7 +148,9 @@ def draw_errors(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
                 off = 100.0 * abs(errors(row)[f"{name} amplitude"])
                 label = " ".join(part for part in (str(row["scene"]), str(row["changes"])) if part)
                 axis.plot(row["CPU s"], off, "o", label=label)
-            axis.set(xscale="log", title=f"{scene}: amplitude of {name}", xlabel="CPU seconds", ylabel="difference in %")
+            axis.set(
+                xscale="log", title=f"{scene}: amplitude of {name}", xlabel="CPU seconds", ylabel="difference in %"
+            )
             axis.set_ylim(bottom=0.0)
         line[-1].legend(fontsize=6, loc="upper right")
     figure.savefig(path, dpi=130)

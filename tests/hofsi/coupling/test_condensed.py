@@ -50,8 +50,8 @@ PULSE = ["mesh.order=2", "time.end=0.001"]
 def test_added_mass_does_not_matter(density):
     _, iterations, _ = march("pressure_pulse", *PULSE, f"solid[0].density={density}", f"solid[1].density={density}")
     assert len(iterations) == 10  # none was divided
-    assert iterations.max() <= 4
-    assert iterations.mean() <= 3.0
+    assert iterations.max() <= 5  # at first the flow is linearised twice
+    assert (iterations[2:] == 2).all()
 
 
 @pytest.mark.parametrize("acceleration", ["iqn-ils", "imvj", "aitken", "constant"])
@@ -79,3 +79,13 @@ def test_implicit_geometry_gains_by_it_too(density):
         reference, more, _ = march("pressure_pulse", *common, "coupling.condensed=false")
         assert more.mean() > 1.5 * iterations.mean()
         assert np.abs(found[:, 0] - reference[:, 0]).max() <= 1e-5 * np.abs(reference[:, 0]).max()
+
+
+def test_a_flow_far_from_what_it_was_linearised_about_is_linearised_again():
+    """A light wall gives way at once: what the first linearisation tells of its load is far off."""
+    common = [*PULSE, "time.end=0.0002", "solid[0].density=0.01"]
+    found, iterations, counts = march("pressure_pulse", *common)
+    assert iterations[0] > 2
+    assert counts["fluid"].reasons["linear step"] > len(found)
+    exact, _, _ = march("pressure_pulse", *common, 'fluid.convection="newton"', "coupling.geometry=implicit")
+    assert np.abs(found[:, 0] - exact[:, 0]).max() <= 0.02 * np.abs(exact[:, 0]).max()

@@ -29,7 +29,7 @@ def test_a_larger_one_is_an_error_that_says_where():
     k = int(np.argmin(np.abs(mesh.points[nodes, 0] - 0.5)))
     gap[k] = [0.0, 0.11]
     with pytest.raises(
-        CouplingError, match=r"ends 0.11 from where .* at \(0.5, 0\); expected less than half .* 0.2\."
+        CouplingError, match=r"ends 0.11 from where .* at \(0.5, 0\); expected less than half .* 0\.2\."
     ) as e:
         InterfaceGap(mesh, nodes).check(gap, "coupling, t = 3")
     assert e.value.reason == "geometry"

@@ -47,7 +47,7 @@ def coupling_failure(
             "nonlinear.tolerance."
         )
         return CouplingError(f"{problem} {way}", reason, where)
-    more = _more(verdict, settings)
+    more = _more(verdict, settings, steady=steady)
     if steady:
         way = _choice([*more, "lower the load", "start nearer to the solution"])
         return CouplingError(f"{problem} {way}", reason, where)
@@ -101,9 +101,9 @@ def _left(residuals: Residuals, test: ConvergenceTest) -> str:
     )
 
 
-def _more(verdict: Verdict, settings: CouplingSettings) -> list[str]:
+def _more(verdict: Verdict, settings: CouplingSettings, *, steady: bool) -> list[str]:
     """Settings that may help."""
-    ways = [] if settings.condensed else ["leave coupling.condensed on"]
+    ways = [] if settings.condensed or steady else ["leave coupling.condensed on"]
     ways += [] if settings.acceleration in ("iqn-ils", "imvj") else ['set coupling.acceleration = "iqn-ils"']
     return ways if verdict else [*ways, "raise coupling.max_iterations"]
 

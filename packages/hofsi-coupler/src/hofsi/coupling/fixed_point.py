@@ -166,12 +166,13 @@ class FixedPoint:
         response: LoadResponse | None = None
         residuals, watch = Residuals(np.inf, np.inf), StallWatch()
         verdict: Verdict = ""
+        again = False
         for iteration in range(1, settings.max_iterations + 1):
             now = flow(d)
             try:
                 with self._clock.phase("solid"):
                     load = share * self._nodal(now.force)
-                    response = None if share != 1.0 else self._response(now, d, response)
+                    response = self._response(now, d, response)
                     displacement = solid_step.solve(load, displacement, tolerance=inner, response=response)
             except ConvergenceError as error:
                 raise solid_failure(error, watch, where) from error
@@ -183,11 +184,16 @@ class FixedPoint:
             excess = self.test.excess(residuals)
             if now.converged and excess <= 1.0:
                 fluid, mesh = now.finish()
-                self.believing = self.test.confirms(now.force, self._load.evaluate(fluid))
-                if self.believing:
+                if self.test.confirms(now.force, self._load.evaluate(fluid)):
                     self.accelerator.end_step()
                     record = CouplingRecord(iteration, residuals.displacement, residuals.force)
                     return Solution(fluid, mesh, displacement, record)
+                # The flow was too far from what it was linearised about, and is linearised about itself now: begin
+                # again with that. If it happens twice responses are not worth it.
+                self.believing, again = not again, True
+                self.accelerator.begin_step()
+                watch = StallWatch()
+                continue
             verdict = watch.observe(image, residual, excess)
             if verdict:
                 break

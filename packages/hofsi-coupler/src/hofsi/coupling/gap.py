@@ -20,8 +20,8 @@ class InterfaceGap:
     """Refuses steps whose interface ends far from the mesh.
 
     With extrapolated geometry the mesh stands where the interface was predicted to be. The gap is of third order in the
-    step and usually a small part of its increment. If it is as large as the elements beside the interface, the flow
-    that was found is that around another body.
+    step and usually a small part of its increment. If it is as large as the elements beside the interface, by the root
+    of their area, the flow that was found is that around another body.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ class InterfaceGap:
         x, y = self._points[worst]
         raise CouplingError(
             f"the interface ends {distance[worst]:.3g} from where it was predicted and the mesh was made, at the point "
-            f"that was at ({x:.6g}, {y:.6g}); expected less than half of the elements' size there, "
-            f"{self._size[worst]:.3g}. Take smaller time steps, let loads begin less suddenly, or set "
+            f"that was at ({x:.6g}, {y:.6g}); expected less than half of the elements' size there, the root of "
+            f"their area, {self._size[worst]:.3g}. Take smaller time steps, let loads begin less suddenly, or set "
             'coupling.geometry = "implicit".',
             "geometry",
             where,

@@ -137,16 +137,13 @@ class CoupledMarch:
             velocity, rate = c[0] * d + rest, float(c[0])
             if fixed is not None:
                 return self._checked(self._flow(*fixed, velocity, rate=rate), d - predicted, where)
-            if last is None and self._iteration.condensing:
+            if last is None and self._iteration.condensing and self._fluid.responds(mesh.mesh.points):
                 # A linear step to begin with: where the interface goes to, about, and how the load answers.
                 last, moved = begin(d, "linearised", responding=True)
                 return replace(self._flow(last, moved, velocity, rate=rate), converged=False, affine=False)
             step, moved = begin(d, convection, responding=False)
             if last is not None:
-                with self._clock.phase("fluid"):
-                    if last.interface_matrix is not None:
-                        last.solve(velocity)
-                    step.continue_from(last)
+                step.continue_from(last, velocity)
             last = step
             return self._flow(step, moved, velocity, _NEWTON, rate=rate)
 
@@ -251,8 +248,7 @@ class CoupledMarch:
         """
 
         def stiffness() -> Array | None:
-            matrix = step.interface_matrix
-            return None if matrix is None else -rate * matrix
+            return step.interface_stiffness(rate)
 
         def solve() -> tuple[FluidState, MeshState]:
             with self._clock.phase("fluid"):
@@ -265,7 +261,7 @@ class CoupledMarch:
         if reaction is not None:
             return Flow(-reaction, True, solve, stiffness, affine=True)
         state, mesh = solve()
-        affine = telling and step.interface_matrix is not None
+        affine = telling and step.responding
         with self._clock.phase("fluid"):
             return Flow(self._load.evaluate(state), step.converged, lambda: (state, mesh), stiffness, affine)
 

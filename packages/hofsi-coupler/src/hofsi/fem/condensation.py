@@ -282,6 +282,7 @@ class CondensedFactor:
     def __init__(self, system: CondensedSystem, condensed: CondensedMatrices, factor: Solver) -> None:
         self.system, self.factor = system, factor
         self._coupling, self._inner, self._X = condensed.coupling, condensed.inner, condensed.X
+        self._flexibility: tuple[Index, Array] | None = None
 
     def solve(self, r: Array) -> Array:
         """Solve for all unknowns.
@@ -318,6 +319,12 @@ class CondensedFactor:
         unknowns : ndarray, shape (k,)
             Global numbers, on the elements' boundaries. Constrained ones do not move.
         """
+        kept = self._flexibility
+        if kept is None or not np.array_equal(kept[0], unknowns):
+            kept = self._flexibility = unknowns, self._inverse_at(unknowns)
+        return kept[1]
+
+    def _inverse_at(self, unknowns: Index) -> Array:
         system = self.system
         assert isinstance(self.factor, CheckedSolver)
         place = np.searchsorted(system.unknowns, unknowns)
@@ -326,6 +333,7 @@ class CondensedFactor:
         own, k = place[free], np.flatnonzero(free)
         loads = np.zeros((len(system.unknowns), len(own)))
         loads[own, np.arange(len(own))] = 1.0
+        self.factor.solve(loads.sum(axis=1))  # with a look at the residual: poor factors are replaced
         result = np.zeros((len(unknowns), len(unknowns)))
         result[np.ix_(k, k)] = self.factor.substitute(loads)[own]
         return result

@@ -74,8 +74,15 @@ def coupling_items(case: Case, meshes: Meshes) -> Iterator[Item]:
         yield Item("geometry", "implicit: a new fluid mesh in every coupling iteration")
     else:
         yield Item("geometry", "extrapolated: one fluid mesh a step")
-        if settings.condensed:
-            yield Item(
-                "condensation",
-                "fluid condensed to the interface and the solid solved together with it, where both solve directly",
-            )
+    if settings.condensed and not isinstance(case.time, Steady) and _linear(case):
+        yield Item(
+            "condensation",
+            "fluid condensed to the interface and the solid solved together with it, where both solve directly",
+        )
+
+
+def _linear(case: Case) -> bool:
+    """Whether steps begin with a linear fluid."""
+    assert case.fluid is not None
+    implicit = case.coupling.geometry == "implicit"
+    return implicit or case.fluid.convection_of_steps(case.coupling) in ("linearised", "extrapolated")

@@ -148,6 +148,11 @@ class FluidEquations:
             self._system.origin = SystemOrigin(self.boundary.constrained_at, points)
         return self._system
 
+    def responds(self, points: Array) -> bool:
+        """Whether the factors of linear steps at these node positions tell how the interface answers."""
+        system = self.system(points)
+        return isinstance(system, CondensedSystem) and system.exact and bool(system.border.size)
+
     def check_periodic(self, points: Array, time: float) -> None:
         """Check that periodic sides have moved alike, if the mesh has moved.
 

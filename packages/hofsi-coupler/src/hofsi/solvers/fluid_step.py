@@ -81,10 +81,16 @@ class FluidStep:
         self._residual: Array | None = None
         self._responding = responding
         self._response: InterfaceResponse | None = None
+        self._stiffness: tuple[Array, float, Array] | None = None
 
-    def continue_from(self, other: FluidStep) -> None:
-        """Start the solution from that of another step, for example on the mesh of the last coupling iteration."""
+    def continue_from(self, other: FluidStep, interface: Array | None = None) -> None:
+        """Start the solution from that of another step, for example on the mesh of the last coupling iteration.
+
+        If the other one tells how it answers to the velocity of the interface, shape (k, 2), from that answer.
+        """
         self._unknowns = other._unknowns
+        if interface is not None and other._response is not None:
+            self._unknowns = other._unknowns + other._response.change(interface)
 
     def solve(self, interface: Array, *, max_iterations: int | None = None) -> tuple[Array, Array]:
         """Solve the step for a velocity of the interface nodes.
@@ -144,27 +150,66 @@ class FluidStep:
         return self._response.reaction(interface)
 
     @property
-    def interface_matrix(self) -> Array | None:
-        """What velocities of the interface (2k,) add to the reaction there, shape (2k, 2k); None as in `respond`."""
-        return None if self._response is None else self._response.matrix
+    def responding(self) -> bool:
+        """Whether it is known how the step answers to other velocities of the interface."""
+        return self._response is not None
+
+    def interface_stiffness(self, rate: float) -> Array | None:
+        """What displacements of the interface (2k,) add to the force on its other side; None as in `respond`.
+
+        Parameters
+        ----------
+        rate : float
+            Of the interface's velocity for a displacement.
+
+        Returns
+        -------
+        ndarray, shape (2k, 2k), or None
+            The same object as long as it is the same.
+        """
+        if self._response is None:
+            return None
+        matrix, kept = self._response.matrix, self._stiffness
+        if kept is None or kept[0] is not matrix or kept[1] != rate:
+            kept = self._stiffness = matrix, rate, -rate * matrix
+        return kept[2]
 
     def _solve_linear(self, unknowns: Array, interface: Array) -> Array:
         self.converged = True
-        if self._response is not None:
-            changed = self._unknowns + self._response.change(interface)
-            residual = self._linear_residual(changed)
-            norm, scale = self._operator.size(residual)
-            if norm <= _EXACT * scale:
-                self._residual = residual
-                self._respond_from(changed, interface)
-                return changed
-        unknowns = self._corrected(unknowns)
+        responded = self._responded(interface)
+        if responded is None:
+            unknowns = self._corrected(unknowns)
+        elif self._near(responded):
+            self._respond_from(responded, interface)
+            return responded
+        else:
+            unknowns, self._settled = responded, False
         if not self._settled:
             unknowns = self._settle(unknowns)
-            if self._responding and self._factor is None:
+            if self._factor is None and self._equations.responds(self.points) and self._responding:
                 unknowns = self._corrected(unknowns)  # the factors of what is linearised about now tell the response
         self._respond_from(unknowns, interface)
         return unknowns
+
+    def _responded(self, interface: Array) -> Array | None:
+        """What the response tells of another velocity of the interface; None if it does not tell that exactly."""
+        if self._response is None:
+            return None
+        changed = self._unknowns + self._response.change(interface)
+        residual = self._linear_residual(changed)
+        norm, scale = self._operator.size(residual)
+        if norm > _EXACT * scale:
+            return None
+        self._residual = residual
+        return changed
+
+    def _near(self, unknowns: Array) -> bool:
+        """Whether a velocity is near enough to what was expected for one linearisation."""
+        if self._convection != "linearised" or not self._equations.convecting:
+            return True
+        velocity = unknowns[: self._expected.size].reshape(-1, 2)
+        largest = float(np.abs(velocity).max(initial=0.0))
+        return float(np.abs(velocity - self._expected).max(initial=0.0)) <= _UNEXPECTED * largest
 
     def _corrected(self, unknowns: Array) -> Array:
         """Solve the linear equations at hand, from some unknowns on; their residual is kept."""
@@ -201,9 +246,7 @@ class FluidStep:
     def _settle(self, unknowns: Array) -> Array:
         """Accept what the first linearisation gives, or go on with Newton's method and linearise about its result."""
         self._settled = True
-        velocity = unknowns[: self._expected.size].reshape(-1, 2)
-        largest = float(np.abs(velocity).max(initial=0.0))
-        if float(np.abs(velocity - self._expected).max(initial=0.0)) <= _UNEXPECTED * largest:
+        if self._near(unknowns):
             return unknowns
         settings = self._equations.nonlinear
         unknowns = self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)

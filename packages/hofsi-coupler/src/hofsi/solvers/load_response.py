@@ -44,6 +44,11 @@ class LoadResponse:
         """Add what a displacement (n, 2) gains to nodal forces (n, 2)."""
         force[self.nodes] += self.of(displacement[self.nodes] - self.about)
 
+    def rounding(self, size: Array) -> float:
+        """Size of the rounding error of the answer to displacements of some absolute size (n, 2)."""
+        answer = np.abs(self.matrix) @ size[self.nodes].ravel()
+        return float(np.finfo(float).eps * np.linalg.norm(answer))
+
     def of(self, change: Array) -> Array:
         """F times a change (k, 2) of displacement, shape (k, 2)."""
         return np.asarray((self.matrix @ change.ravel()).reshape(-1, 2))

@@ -135,11 +135,15 @@ class SolidNewton:
         self.tangent = tangent
         self.response: LoadResponse | None = None
         self._responding: tuple[LoadResponse, Tangent, RespondingSystem] | None = None
-        self._floor: float | None = None
 
     def residual(self, displacement: Array, force: Array) -> Array:
         """What the supports must add for equilibrium, shape (n, 2)."""
         return self._at(displacement, force, 0.0).residual
+
+    def nearer(self, first: Array, second: Array, force: Array) -> Array:
+        """The one of two displacements that leaves the smaller residual; the first if it is not told."""
+        norms = [self._at(displacement, force, 0.0).norm for displacement in (first, second)]
+        return second if norms[1] < norms[0] else first
 
     def solve(self, start: Array, force: Array, tolerance: float) -> Array:
         """Find the displacement from a starting value.
@@ -279,11 +283,13 @@ class SolidNewton:
             return True
         if iteration < 2:
             return False
-        if self._floor is None:
-            inertia = self._mass_factor * (self._equations.mass @ np.abs(point.displacement))
-            self._floor = self._equations.rounding(point.displacement, point.gradient)
-            self._floor += float(np.finfo(float).eps * np.linalg.norm(inertia))
-        return point.norm <= _ROUNDING * self._floor
+        size = np.abs(point.displacement)
+        inertia = self._mass_factor * (self._equations.mass @ size)
+        floor = self._equations.rounding(point.displacement, point.gradient)
+        floor += float(np.finfo(float).eps * np.linalg.norm(inertia))
+        if self.response is not None:
+            floor += self.response.rounding(size)
+        return point.norm <= _ROUNDING * floor
 
     def _too_slow(self, rate: float, point: _Point, tolerance: float) -> bool:
         """Whether the tangent at hand would need more iterations than a new one is worth."""

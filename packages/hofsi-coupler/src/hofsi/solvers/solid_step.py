@@ -86,7 +86,8 @@ class SolidStep:
         load : ndarray, shape (n, 2), optional
             Nodal forces of the fluid, besides the loads of the case.
         guess : ndarray, shape (n, 2), optional
-            Where to start; by default what the motion at the start of the step lets expect.
+            Where to start; by default the state at the start of the step, or, with a response, what the motion there
+            lets expect if that is nearer to equilibrium.
         tolerance : float, optional
             Instead of the case's.
         response : LoadResponse, optional
@@ -103,25 +104,31 @@ class SolidStep:
         """
         self._load = load
         force, motion = self._force(load), self._motion
-        start = self._expected() if guess is None else guess
+        start = self.state.displacement if guess is None else guess
         start = start if motion is None else motion.point(start)
         tolerance = self.solver.nonlinear.tolerance if tolerance is None else tolerance
-        self._newton.response = None if response is None else self._at_point(response)
+        newton = self._newton
+        newton.response = None if response is None else self._at_point(response)
         try:
-            result = self._newton.solve(start, force, tolerance)
+            if guess is None and response is not None and motion is not None:
+                start = newton.nearer(start, motion.point(self._expected()), force)
+            result = newton.solve(start, force, tolerance)
         except ConvergenceError:
             if self.solver.equations.linear:
                 raise
-            result = self._newton.solve_by_parts(self.state.displacement, force, tolerance)
-        self.solver.keep(self._newton.tangent)
-        return result if motion is None else motion.end(result)
+            result = newton.solve_by_parts(self.state.displacement, force, tolerance)
+        finally:
+            newton.response = None
+        self.solver.keep(newton.tangent)
+        found = result if motion is None else motion.end(result)
+        if load is not None and response is not None:
+            self._load = load.copy()
+            response.add_force(self._load, found)
+        return found
 
     def _expected(self) -> Array:
         """The displacement at the end of the step that the motion at its start lets expect."""
-        state = self.state
-        if self._motion is None:
-            return state.displacement
-        h = self._steps[0]
+        state, h = self.state, self._steps[0]
         expected = state.displacement + h * state.velocity
         if state.accelerations:
             expected += 0.5 * h * h * state.accelerations[0]
