@@ -87,15 +87,17 @@ def test_light_walls_are_begun_with_care():
     """At a tenth of the fluid's density the first iterate crushes the walls; the second attempt begins nearer."""
     found = Pulse("solid[0].density=0.1", "coupling.acceleration=iqn-ils", "time.end=0.0015", PLAIN)
     assert 15 <= len(found.iterations) <= 18
-    assert found.mean <= 25.0
+    assert np.mean(found.iterations[1:]) <= 25.0  # in the first step the flow is linearised twice
 
 
 @pytest.mark.parametrize("geometry", ["extrapolated", "implicit"])
 def test_accelerators_agree(geometry):
     common = [f"coupling.geometry={geometry}", "time.end=0.001"]
-    reference = Pulse(*common, "coupling.tolerance=1e-7", "coupling.force_tolerance=1e-6")
+    reference = Pulse(*common, "coupling.tolerance=1e-8", "coupling.force_tolerance=1e-7")
     others = {"iqn-ils": [], "imvj": [], "aitken": ["coupling.max_iterations=400", "coupling.relaxation=0.1"]}
     for kind, more in others.items():
         found = Pulse(*common, PLAIN, f"coupling.acceleration={kind}", *more)
         for name, scale in (("wall_1", reference.series["wall_1"].max()), ("pressure", 2e4)):
-            np.testing.assert_allclose(found.series[name], reference.series[name], rtol=0.0, atol=1e-6 * scale)
+            np.testing.assert_allclose(
+                found.series[name], reference.series[name], rtol=0.0, atol=2e-6 * scale
+            )  # 1e-6 of ten increments

@@ -166,8 +166,9 @@ class FixedPoint:
         response: LoadResponse | None = None
         residuals, watch = Residuals(np.inf, np.inf), StallWatch()
         verdict: Verdict = ""
-        again = False
-        for iteration in range(1, settings.max_iterations + 1):
+        iteration = before = 0  # in all, before the flow was linearised again
+        while iteration < settings.max_iterations:
+            iteration += 1
             now = flow(d)
             try:
                 with self._clock.phase("solid"):
@@ -186,11 +187,12 @@ class FixedPoint:
                 fluid, mesh = now.finish()
                 if self.test.confirms(now.force, self._load.evaluate(fluid)):
                     self.accelerator.end_step()
-                    record = CouplingRecord(iteration, residuals.displacement, residuals.force)
+                    record = CouplingRecord(before + iteration, residuals.displacement, residuals.force)
                     return Solution(fluid, mesh, displacement, record)
                 # The flow was too far from what it was linearised about, and is linearised about itself now: begin
                 # again with that. If it happens twice responses are not worth it.
-                self.believing, again = not again, True
+                self.believing = not before
+                before, iteration = before + iteration, 0
                 self.accelerator.begin_step()
                 watch = StallWatch()
                 continue
