@@ -99,6 +99,4 @@ def test_accelerators_agree(geometry):
         found = Pulse(*common, PLAIN, f"coupling.acceleration={kind}", *more)
         for name, scale in (("wall_1", reference.series["wall_1"].max()), ("pressure", 2e4)):
             # Each of the ten steps is solved to 1e-6 of its increment.
-            np.testing.assert_allclose(
-                found.series[name], reference.series[name], rtol=0.0, atol=2e-6 * scale
-            )  # 1e-6 of ten increments
+            np.testing.assert_allclose(found.series[name], reference.series[name], rtol=0.0, atol=2e-6 * scale)
