@@ -30,7 +30,8 @@ def test_all_classes_are_frozen() -> None:
 
 
 def test_defaults_are_those_of_the_scene_format() -> None:
-    assert dataclasses.astuple(CouplingSettings()) == ("iqn-ils", "extrapolated", 2, 1e-6, 1e-4, 50, 10, 1e-3, 0.5)
+    coupling = ("iqn-ils", "extrapolated", 2, 1e-6, 1e-4, 50, 10, 1e-3, 0.5, True)
+    assert dataclasses.astuple(CouplingSettings()) == coupling
     assert dataclasses.astuple(NonlinearSettings()) == (1e-10, 25)
     assert dataclasses.astuple(LinearSettings()) == ("auto", 1e-10, True)
     assert dataclasses.astuple(OutputSettings()) == (True, 10, True, None, None, False)

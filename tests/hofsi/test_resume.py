@@ -246,10 +246,10 @@ def test_a_run_that_is_asked_to_end_says_how_to_go_on(
 
 @posix
 def test_after_a_step_that_was_divided_a_run_goes_on_to_the_bit(flap: str, scene: Write, tmp_path: Path) -> None:
-    """A gust that a step of 0.1 does not bear with 18 iterations, but two of 0.05: broken off between them."""
+    """A gust that a step of 0.1 does not bear with 12 iterations, but two of 0.05: broken off between them."""
     gust = '"4*U*y*(H - y)/H**2*sin(t)*(1 + 3*exp(-((t - 0.4)/0.1)**2))"'
     text = scene(changed(flap, ('"4*U*y*(H - y)/H**2*sin(t)"', gust)))
-    changes = [*TABLES_ONLY, "time.end=0.3", "coupling.max_iterations=18", "coupling.condensed=false"]
+    changes = [*TABLES_ONLY, "time.end=0.3", "coupling.max_iterations=12", "coupling.condensed=false"]
     assert run(text, tmp_path / "whole", changes) == 0
     steps = rows(tmp_path / "whole" / "steps.csv")
     assert [(row["dt"], row["rejected_because"]) for row in steps[2:]] == [("0.05", "AddedMassError"), ("0.05", "")]
