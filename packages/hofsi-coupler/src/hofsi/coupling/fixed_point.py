@@ -193,6 +193,7 @@ class FixedPoint:
                 # again with that. If it happens twice responses are not worth it.
                 self.believing = not before
                 before, iteration = before + iteration, 0
+                self.accelerator.end_step()  # what it has learned serves the new flow as it would a later step
                 self.accelerator.begin_step()
                 watch = StallWatch()
                 continue

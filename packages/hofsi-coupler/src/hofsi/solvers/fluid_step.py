@@ -186,7 +186,7 @@ class FluidStep:
             unknowns, self._settled = responded, False
         if not self._settled:
             unknowns = self._settle(unknowns)
-            if self._factor is None and self._equations.responds(self.points) and self._responding:
+            if self._factor is None and self._responding and self._equations.responds(self.points):
                 unknowns = self._corrected(unknowns)  # the factors of what is linearised about now tell the response
         self._respond_from(unknowns, interface)
         return unknowns
