@@ -65,6 +65,19 @@ def test_condensed_solution_is_that_of_the_full_system(distorted, order, rolling
         np.testing.assert_allclose(x.reshape(-1, 2)[only_rolling] @ NORMAL, 0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("rolling", [False, True])
+def test_what_a_solution_leaves_of_each_element(distorted, order, rolling):
+    rng = np.random.default_rng(43)
+    mesh = distorted(order)
+    dofs, boundary = numbering(mesh)
+    A, r = element_matrices(dofs, rng), rng.standard_normal(dofs.shape)
+    system = CondensedSystem(dofs, boundary, 2 * len(mesh.points), supports(mesh, rolling))
+    x, left = system.factorise(A).solve_and_balance(r)
+    np.testing.assert_array_equal(x, system.factorise(A).solve(r))
+    np.testing.assert_allclose(left, r - (A @ x[dofs][:, :, None])[:, :, 0], rtol=0.0, atol=1e-12)
+
+
 def test_pinned_unknowns_beyond_the_vector_field(distorted):
     rng = np.random.default_rng(18)
     mesh = distorted(2)

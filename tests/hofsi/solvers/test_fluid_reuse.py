@@ -83,6 +83,32 @@ def test_a_linear_step_responds_to_its_interface_without_a_solution(flows, model
     assert solver.counts.solves == made + 2  # those of the reference
 
 
+@pytest.mark.parametrize("convection", ["linearised", "extrapolated"])
+@pytest.mark.parametrize("open_end", [True, False])
+def test_the_reaction_that_factors_tell_is_that_of_the_fields(flows, convection, open_end):
+    """A second solution starts from the first and finds nothing to correct: its reaction is the residual there."""
+    mesh = flows.grid(3, turn=0.4)
+    # Slip puts nodes into frames of their own; what leaves on the left comes in at the open end.
+    ends = [flows.velocity("left", "-1 - y", "x*y"), case.DoNothing(("right",), backflow=0.7)]
+    conditions = [
+        case.Slip(("top",)),
+        case.NoSlip(("bottom",)),
+        *(ends if open_end else [case.NoSlip(("left", "right"))]),
+    ]
+    solver = flows.solver(mesh, conditions, body_force=("y", "-2"))
+    state = flows.march(solver, solver.initial_state(), (0.1,) * 3)
+    shift = 0.02 * np.random.default_rng(47).standard_normal(mesh.points.shape)
+    shift[np.unique(np.concatenate([mesh.edge_nodes(name) for name in flows.around]))] = 0.0
+    step = solver.begin_step(state, mesh.points + shift, (0.1, 0.1), 0.4, convection=convection)
+    made = solver.counts.solves, solver.counts.iterations
+    step.solve(NOBODY)
+    first = step.reaction()
+    step.solve(NOBODY)
+    assert (solver.counts.solves, solver.counts.iterations) == (made[0] + 2, made[1])
+    assert open_end == bool(solver.counts.backflows)
+    np.testing.assert_allclose(first, step.reaction(), rtol=0.0, atol=1e-11 * np.abs(first).max())
+
+
 def test_an_enclosed_fluid_does_not_respond_without_a_solution(flows):
     mesh = flows.grid(3)
     top = mesh.edge_nodes("top")

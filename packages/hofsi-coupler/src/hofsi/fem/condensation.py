@@ -281,7 +281,7 @@ class CondensedFactor:
 
     def __init__(self, system: CondensedSystem, condensed: CondensedMatrices, factor: Solver) -> None:
         self.system, self.factor = system, factor
-        self._coupling, self._inner, self._X = condensed.coupling, condensed.inner, condensed.X
+        self._condensed = condensed
         self._flexibility: tuple[Index, Array] | None = None
 
     def solve(self, r: Array) -> Array:
@@ -297,17 +297,37 @@ class CondensedFactor:
         ndarray, shape (size,)
             In x and y components; zero where constrained.
         """
-        system = self.system
-        b = system.boundary
+        loads, z = self._condensed_loads(r)
+        x_b = self._solved(loads)
+        return self._everywhere(self.system.rotate_back(x_b), z)
+
+    def solve_and_balance(self, r: Array) -> tuple[Array, Array]:
+        """The same, and what the solution leaves of the right-hand side, r - A x of each element, shape (e, k).
+
+        As far as the factors are exact: that of the inner unknowns is taken to be zero.
+        """
+        loads, z = self._condensed_loads(r)
+        x_b = self._solved(loads)
+        left = np.zeros_like(r)
+        on_boundary = loads - (self._condensed.S @ x_b[:, :, None])[:, :, 0]
+        left[:, : self.system.boundary] = self.system.rotate_back(on_boundary)
+        return self._everywhere(self.system.rotate_back(x_b), z), left
+
+    def _condensed_loads(self, r: Array) -> tuple[Array, Array | None]:
+        """Loads (e, boundary) without the inner unknowns, in the nodes' own frames, and what they do to these."""
+        b, parts = self.system.boundary, self._condensed
         on_boundary = r[:, :b].copy()
         z = None
-        if self._inner is not None:
-            z = self._inner.solve(r[:, b:, None])[:, :, 0]
-            on_boundary -= (self._coupling @ z[:, :, None])[:, :, 0]
-        skeleton = system.skeleton
-        solution = self.factor.solve(assemble_vector(skeleton, system.rotate(on_boundary), len(system.unknowns)))
-        padded = np.append(solution, 0.0)  # number -1 reads the zero of a constrained unknown
-        return self._everywhere(system.rotate_back(padded[skeleton]), z)
+        if parts.inner is not None:
+            z = parts.inner.solve(r[:, b:, None])[:, :, 0]
+            on_boundary -= (parts.coupling @ z[:, :, None])[:, :, 0]
+        return self.system.rotate(on_boundary), z
+
+    def _solved(self, loads: Array) -> Array:
+        """Unknowns (e, boundary) for condensed loads, both in the nodes' own frames."""
+        skeleton = self.system.skeleton
+        solution = self.factor.solve(assemble_vector(skeleton, loads, len(self.system.unknowns)))
+        return np.asarray(np.append(solution, 0.0)[skeleton])  # number -1 reads the zero of a constrained unknown
 
     def flexibility(self, unknowns: Index) -> Array:
         """What loads on some unknowns do to these unknowns, shape (k, k): their part of the inverse.
@@ -365,7 +385,7 @@ class CondensedFactor:
         x = np.zeros(system.size)
         x[system.dofs[:, :b]] = x_b
         if system.inner:
-            inner = (self._X @ x_b[:, :, None])[:, :, 0]
+            inner = (self._condensed.X @ x_b[:, :, None])[:, :, 0]
             x[system.dofs[:, b:]] = -inner if z is None else z - inner
         if system.copies is not None:
             x[system.copies[:, 0]] = x[system.copies[:, 1]]

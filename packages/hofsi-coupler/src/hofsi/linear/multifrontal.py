@@ -45,12 +45,7 @@ class EliminationTree:
         self.cells, self.size, self.kept = cells, size, kept
         leaf = leaf or max(1, round(_LEAF_UNKNOWNS / max(1, cells.shape[1])))
         self.fronts = dissect(cells, places, leaf, np.arange(size - kept, size))
-        self._leaves = [k for k, front in enumerate(self.fronts) if not front.children]
-        self._elements = np.concatenate([self.fronts[k].elements for k in self._leaves])
-        sizes = [len(self.fronts[k].unknowns) ** 2 for k in self._leaves]
-        self.leaf_starts = dict(zip(self._leaves, np.concatenate(([0], np.cumsum(sizes)))[:-1].tolist(), strict=True))
-        self._leaf_size = int(sum(sizes))
-        self._slots = self._leaf_slots()
+        self._slots = {k: self._leaf_slots(front) for k, front in enumerate(self.fronts) if not front.children}
         self.maps = [self._runs(front) for front in self.fronts]
 
     @property
@@ -65,22 +60,16 @@ class EliminationTree:
         a, b = n[:, 0], n[:, 1] - n[:, 0]
         return float((a**3 / 3.0 + a**2 * b + a * b**2).sum())
 
-    def _leaf_slots(self) -> Index:
-        """Where the entries of element matrices go in the matrices of the leaves, column after column."""
-        slots = np.full((len(self._elements), self.cells.shape[1] ** 2), self._leaf_size, dtype=np.int64)
-        row = 0
-        for k in self._leaves:
-            front = self.fronts[k]
-            count, n = len(front.elements), len(front.unknowns)
-            order = np.argsort(front.unknowns)
-            mine = self.cells[front.elements]
-            place = order[np.minimum(np.searchsorted(front.unknowns, mine, sorter=order), n - 1)] if n else mine
-            # Element matrices are (row, column) in memory, fronts (column, row).
-            slot = self.leaf_starts[k] + place[:, None, :] * n + place[:, :, None]
-            kept = (mine >= 0)[:, None, :] & (mine >= 0)[:, :, None]
-            slots[row : row + count] = np.where(kept, slot, self._leaf_size).reshape(count, -1)
-            row += count
-        return slots.ravel()
+    def _leaf_slots(self, front: Front) -> Index:
+        """Where the entries of its elements' matrices go in the matrix of a leaf, column after column."""
+        n = len(front.unknowns)
+        order = np.argsort(front.unknowns)
+        mine = self.cells[front.elements]
+        place = order[np.minimum(np.searchsorted(front.unknowns, mine, sorter=order), n - 1)] if n else mine
+        # Element matrices are (row, column) in memory, fronts (column, row).
+        slot = place[:, None, :] * n + place[:, :, None]
+        free = (mine >= 0)[:, None, :] & (mine >= 0)[:, :, None]
+        return np.where(free, slot, n * n).ravel()
 
     def _runs(self, front: Front) -> list[list[tuple[slice, slice]]]:
         """For each child, the runs of what is left over there and where they go here: (here, there)."""
@@ -100,10 +89,13 @@ class EliminationTree:
             )
         return result
 
-    def leaf_matrices(self, S: Array) -> Array:
-        """Matrices of all leaves, one after the other, from element matrices (e, k, k)."""
-        values = S[self._elements].ravel()
-        return np.asarray(np.bincount(self._slots, weights=values, minlength=self._leaf_size + 1), dtype=float)
+    def leaf_matrix(self, k: int, S: Array) -> Array:
+        """Matrix of a leaf, in columns, from element matrices (e, k, k)."""
+        front = self.fronts[k]
+        n = len(front.unknowns)
+        values = S[front.elements].ravel()
+        columns = np.bincount(self._slots[k], weights=values, minlength=n * n + 1)[: n * n]
+        return np.asarray(columns, dtype=float).reshape(n, n).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +161,6 @@ class MultifrontalFactor:
 
     def __init__(self, tree: EliminationTree, S: Array) -> None:
         self._tree, self._S = tree, S
-        leaves = tree.leaf_matrices(S)
         waiting: dict[int, Array] = {}
         self._blocks: list[_Block] = []
         for k, front in enumerate(tree.fronts):
@@ -183,8 +174,7 @@ class MultifrontalFactor:
                             here = F[rows, columns]
                             np.add(here, C[there, beyond], out=here)
             else:
-                start = tree.leaf_starts[k]
-                F = leaves[start : start + n * n].reshape(n, n).T
+                F = tree.leaf_matrix(k, S)
             waiting[k] = self._eliminate(front, F, m)
         self.complement = self._sorted(waiting.popitem()[1])
 

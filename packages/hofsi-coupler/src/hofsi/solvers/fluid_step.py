@@ -215,8 +215,12 @@ class FluidStep:
         """Solve the linear equations at hand, from some unknowns on; their residual is kept."""
         if self._factor is None:
             self._factor = self._factorised()
-        unknowns = unknowns + self._factor.solve(self._linear_residual(unknowns))
         self._equations.counts.solves += 1
+        r = self._linear_residual(unknowns)
+        if isinstance(self._factor, CondensedFactor):
+            change, self._residual = self._factor.solve_and_balance(r)
+            return unknowns + change
+        unknowns = unknowns + self._factor.solve(r)
         self._residual = self._linear_residual(unknowns)
         return unknowns
 
