@@ -9,7 +9,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from hoblock.numbering import side_nodes
-from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.condensed_factor import CondensedFactor
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.fem.element import boundary_first
 from hofsi.fem.element_matrices import ElementMatrices

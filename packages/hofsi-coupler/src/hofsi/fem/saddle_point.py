@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from hofsi.counts import Counts
 from hofsi.errors import LinearSolverError
 from hofsi.fem.assembly import assemble_vector
-from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.condensed_factor import CondensedFactor
 from hofsi.fem.constraints import NodeConstraints
 from hofsi.fem.element_matrices import ElementMatrices, origin_of
 from hofsi.fem.multigrid import GridCycle, GridLevel, grid_levels

@@ -12,7 +12,8 @@ from hoblock.reference import differentiation_matrix, gauss_legendre, gauss_loba
 from hofsi import case
 from hofsi.counts import Counts
 from hofsi.fem.assembly import assemble_vector
-from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.condensed_factor import CondensedFactor
 from hofsi.fem.element import boundary_first
 from hofsi.fem.element_matrices import TracedMatrices
 from hofsi.fem.geometry import Geometry, element_geometry

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.counts import Counts
-from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.condensed_factor import CondensedFactor
 from hofsi.fem.element_matrices import MatrixMaker, origin_of
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.lagged import LaggedSolver

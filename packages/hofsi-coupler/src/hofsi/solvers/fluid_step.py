@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.case import Convection
-from hofsi.errors import LinearSolverError, NewtonError
 from hofsi.fem.assembly import assemble_vector
-from hofsi.fem.condensation import CondensedFactor
+from hofsi.fem.condensed_factor import CondensedFactor
 from hofsi.linear.solver import Solver
-from hofsi.solvers.continuation import approach
 from hofsi.solvers.fluid_equations import FluidEquations
-from hofsi.solvers.fluid_factors import Problem
+from hofsi.solvers.fluid_newton import FluidNewton
 from hofsi.solvers.fluid_operator import FluidOperator
 from hofsi.solvers.fluid_state import FluidState
 from hofsi.solvers.fluid_system import factorised
@@ -24,11 +20,6 @@ Array = NDArray[np.float64]
 
 __all__ = ["FluidStep"]
 
-_ON_THE_WAY = 1e-6  # tolerance of the problems that continuation solves on the way
-_ROUNDING = 1e-14  # of |A| |u|: a residual below that is rounding; nothing else is left of a flow without stress
-_FEW = 12  # Newton iterations that each of them may take: from a good start that is enough
-_ROUGHEST = 1e-3  # relative residual of an iteration's linear system
-_PART = 1e-3  # of the nonlinear tolerance: what the last linear system may leave
 _EXACT = 1e-12  # relative residual of a solution for another velocity of the interface; one with more is solved for
 _UNEXPECTED = 0.25  # of the velocity: a flow further from what was expected needs more than one linearisation
 
@@ -75,6 +66,7 @@ class FluidStep:
         self._convection: Convection = convection
         self.converged = False
         self._operator = FluidOperator(equations, points, mesh_velocity, rate, history, time)
+        self._newton = FluidNewton(equations, self._operator, points, rate, time, picard=convection == "picard")
         self._factor: Solver | None = None
         self._settled = convection != "linearised" or not equations.convecting
         self._unknowns = np.concatenate([expected.ravel(), state.pressure])
@@ -125,7 +117,8 @@ class FluidStep:
             if self.linear:
                 unknowns = self._solve_linear(unknowns, interface)
             else:
-                unknowns = self._solve_nonlinear(unknowns, max_iterations)
+                unknowns = self._newton.solve(unknowns, max_iterations)
+                self.converged, self._residual = self._newton.converged, self._newton.residual
         if enclosed and self._residual is not None:
             enclosed.remove_mean(unknowns[n:], self._residual, geometry, flux)
         self._unknowns = unknowns
@@ -252,93 +245,10 @@ class FluidStep:
         self._settled = True
         if self._near(unknowns):
             return unknowns
-        settings = self._equations.nonlinear
-        unknowns = self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
+        unknowns, self._residual = self._newton.solve_at_once(unknowns), self._newton.residual
         self._expected = unknowns[: self._expected.size].reshape(-1, 2)
         self._factor = None
         return unknowns
-
-    def _solve_nonlinear(self, unknowns: Array, max_iterations: int | None) -> Array:
-        """Newton's method, and continuation if it fails on a steady problem."""
-        settings = self._equations.nonlinear
-        if max_iterations is not None:
-            return self._solve_newton(unknowns, max_iterations, settings.tolerance, stop=True)
-        try:
-            return self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
-        except (NewtonError, LinearSolverError) as error:
-            if self._rate:
-                raise
-            failure = error
-        try:
-            return approach(self._with_share, unknowns, failure, "of the convection")
-        finally:
-            self._operator.share = 1.0
-
-    def _with_share(self, unknowns: Array, share: float) -> Array:
-        """Solve with a share of the convection, roughly if it is not all."""
-        equations, settings = self._equations, self._equations.nonlinear
-        self._operator.share = share
-        equations.counts.continuation_steps += 1
-        if share == 1.0:
-            return self._solve_newton(unknowns, settings.max_iterations, settings.tolerance)
-        newton = self._convection != "picard"
-        limit = min(_FEW, settings.max_iterations) if newton else settings.max_iterations
-        rough = self._solve_newton(unknowns, limit, max(_ON_THE_WAY, settings.tolerance))
-        self.converged = False
-        return rough
-
-    def _solve_newton(self, unknowns: Array, limit: int, tolerance: float, *, stop: bool = False) -> Array:
-        """At most some iterations; with ``stop``, ending there is not an error."""
-        equations = self._equations
-        picard = self._convection == "picard"
-        norm, scale = self._balance(unknowns)
-        for iteration in range(limit + 1):
-            if norm <= tolerance * scale or self._operator.is_rounding(norm, unknowns, _ROUNDING):
-                self.converged = True
-                return unknowns
-            if not np.isfinite(norm):
-                raise NewtonError(
-                    f"the residual is not finite after {iteration} iterations. Lower the time step or the Reynolds "
-                    "number, or check the given velocities.",
-                    "diverged",
-                    f"fluid, t = {self.time:g}",
-                )
-            if iteration == limit:
-                break
-            velocity = unknowns[: self._expected.size].reshape(-1, 2)
-            matrices = partial(self._operator.matrices, velocity, newton=not picard)
-            problem = Problem(self.points, self._rate, self._operator.share)
-            assert self._residual is not None
-            r, goal = self._residual, norm * _enough(norm / scale, tolerance)
-            system = equations.system(self.points)
-            delta = equations.factors.solve(system, problem, matrices, r, velocity, norm, goal)
-            equations.counts.iterations += 1
-            unknowns, norm, scale = self._damped(unknowns, delta, norm)
-        if not stop:
-            raise NewtonError(
-                f"Newton's method stopped at a relative residual of {norm / scale:.2g} after {limit} iterations; "
-                f"expected below {tolerance:g}. Refine the mesh, lower the Reynolds number, march in time, or "
-                'use convection = "picard".',
-                "max_iterations",
-                f"fluid, t = {self.time:g}",
-            )
-        return unknowns
-
-    def _damped(self, unknowns: Array, delta: Array, norm: float) -> tuple[Array, float, float]:
-        """Full step, halved up to four times while the residual grows by more than a factor of ten."""
-        factor = 1.0
-        for _ in range(5):
-            trial = unknowns + factor * delta
-            new, scale = self._balance(trial)
-            if np.isfinite(new) and new <= 10.0 * norm:
-                break
-            factor *= 0.5
-        return trial, new, scale
-
-    def _balance(self, unknowns: Array) -> tuple[float, float]:
-        """Norm of the residual at a state, which is kept, and a scale to compare it with."""
-        self._residual = self._operator.residual(unknowns)
-        return self._operator.size(self._residual)
 
     def reaction(self) -> Array:
         """Nodal momentum residual of the last solution, shape (n, 2): the force of the boundary on the fluid.
@@ -363,13 +273,3 @@ class FluidStep:
             self.time,
             self.mesh_velocity,
         )
-
-
-def _enough(residual: float, tolerance: float) -> float:
-    """How well an iteration's linear system is worth solving: as far as Newton's method gets, which squares residuals.
-
-    The last iteration is solved well enough for what it leaves not to count beside the tolerance.
-    """
-    if residual**2 <= tolerance:
-        return min(_ROUGHEST, _PART * tolerance / residual)
-    return min(_ROUGHEST, residual)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hofsi.fem.condensation import CondensedFactor
+from hofsi.fem.condensed_factor import CondensedFactor
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from hofsi.case import NonlinearSettings
 from hofsi.counts import Counts
 from hofsi.errors import ConvergenceError, NewtonError
-from hofsi.fem.condensation import CondensedFactor, CondensedSystem
+from hofsi.fem.condensation import CondensedSystem
+from hofsi.fem.condensed_factor import CondensedFactor
 from hofsi.solvers.load_response import LoadResponse, RespondingSystem, unknowns_of
 from hofsi.solvers.solid_equations import SolidEquations
 from hofsi.solvers.solid_loads import FollowerPressure
