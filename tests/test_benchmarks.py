@@ -52,9 +52,9 @@ TINY = {
         "cross4x",
     ],
     "mesh_motion_cost": ["--elements", "1", "--order", "2", "--repeats", "2"],
-    "mesh_motion_histograms": ["--elements", "1", "--order", "2", "--steps", "10"],
+    "mesh_motion_histograms": ["--elements", "1", "--order", "2", "--steps", "5"],
     "mesh_motion_return": ["--cycles", "2", "--steps", "12", "--order", "2", "--elements", "1"],
-    "mesh_motion_smoothness": ["--steps", "20", "--halvings", "1", "--order", "2"],
+    "mesh_motion_smoothness": ["--steps", "12", "--halvings", "1", "--order", "2"],
     "wall_ramm": ["--orders", "2", "--end", "0.03", "--movers", "barrier", "angles, published"],
 }
 
@@ -152,10 +152,10 @@ def test_the_barriers_vertices_move_as_smoothly_as_the_body(measured):
     result = measured("mesh_motion_smoothness").result
     rows = {row["mover"]: row for row in result.rows}
     for mover in ("barrier, bar", "pseudo-solid, m = -1"):
-        assert rows[mover]["dt = 1/40"] == pytest.approx(rows[mover]["dt = 1/20"], rel=0.02)
-        assert rows[mover]["dt = 1/40"] < 1.5
+        assert rows[mover]["dt = 1/24"] == pytest.approx(rows[mover]["dt = 1/12"], rel=0.02)
+        assert rows[mover]["dt = 1/24"] < 1.5
     assert rows["barrier, bar"]["velocity error"] < 1e-6
-    assert rows["angles, best setting"]["dt = 1/40"] > 2.0
+    assert rows["angles, best setting"]["dt = 1/24"] > 2.0
 
 
 def test_the_worst_elements_of_the_flap(measured):
