@@ -34,11 +34,15 @@ def install_packages(session: nox.Session, *others: str) -> None:
 
 @nox.session
 def tests(session: nox.Session) -> None:
-    """Run all tests but the slow ones; add -m slow to run those."""
-    install_packages(session, "pytest", "hypothesis", "gmsh")
+    """Run all tests but the slow ones on all processors, four at most; add -m slow to run those."""
+    install_packages(session, "pytest", "pytest-xdist", "hypothesis", "gmsh")
     # An oracle that has no wheel for some machines; its tests are skipped there.
     session.install("--only-binary=mfem", "mfem", success_codes=[0, 1])
-    session.run("pytest", "-m", "not slow and not verification", *session.posargs)
+    # Files stay together: their fixtures are shared. More threads than processors would wait for each other.
+    together = ("-n", "auto", "--maxprocesses", "4", "--dist", "loadfile")
+    session.run(
+        "pytest", "-m", "not slow and not verification", *together, *session.posargs, env={"OMP_NUM_THREADS": "1"}
+    )
 
 
 @nox.session(reuse_venv=False)
