@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 
 __all__ = ["FixedPoint", "Flow", "Solution"]
 
+_PASSES = 2  # times the most iterations that flows may take that turn out to be other ones when they are completed
 _INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
 
 
@@ -167,7 +168,7 @@ class FixedPoint:
         residuals, watch = Residuals(np.inf, np.inf), StallWatch()
         verdict: Verdict = ""
         iteration = before = 0  # in all, before the flow was linearised again
-        while iteration < settings.max_iterations:
+        while iteration < settings.max_iterations and before < _PASSES * settings.max_iterations:
             iteration += 1
             now = flow(d)
             try:
