@@ -21,6 +21,10 @@ SOURCES = os.pathsep.join(str(ROOT / package / "src") for package in (HOBLOCK, H
 # Scripts in benchmarks/ that take hours.
 STUDIES = ("flag_oscillations.py", "wall_ramm.py")
 
+# Tests run on all processors; those of a file stay together, for they share what is slow to make.
+TOGETHER = ("-n", "auto", "--maxprocesses", "4", "--dist", "loadfile")
+ONE_THREAD = {"OMP_NUM_THREADS": "1"}  # more threads than processors would wait for each other
+
 # Tools whose next release may judge the same code differently.
 RUFF = "ruff==0.17.6"
 MYPY = "mypy==2.4.1"
@@ -38,17 +42,13 @@ def tests(session: nox.Session) -> None:
     install_packages(session, "pytest", "pytest-xdist", "hypothesis", "gmsh")
     # An oracle that has no wheel for some machines; its tests are skipped there.
     session.install("--only-binary=mfem", "mfem", success_codes=[0, 1])
-    # Files stay together: their fixtures are shared. More threads than processors would wait for each other.
-    together = ("-n", "auto", "--maxprocesses", "4", "--dist", "loadfile")
-    session.run(
-        "pytest", "-m", "not slow and not verification", *together, *session.posargs, env={"OMP_NUM_THREADS": "1"}
-    )
+    session.run("pytest", "-m", "not slow and not verification", *TOGETHER, *session.posargs, env=ONE_THREAD)
 
 
 @nox.session(reuse_venv=False)
 def isolated(session: nox.Session) -> None:
     """Build hoblock's wheel, install it alone without extras, and run its tests against it."""
-    session.install("build", "pytest", "hypothesis")
+    session.install("build", "pytest", "pytest-xdist", "hypothesis")
     wheels = Path(session.create_tmp()) / "wheels"
     for old in wheels.glob("*.whl"):
         old.unlink()
@@ -63,8 +63,9 @@ def isolated(session: nox.Session) -> None:
         "-m",
         "not slow and not oracle",
         "tests/hoblock",
+        *TOGETHER,
         *session.posargs,
-        env={"PYTHONPATH": None},
+        env={"PYTHONPATH": None, **ONE_THREAD},
     )
 
 
