@@ -412,12 +412,12 @@ def test_regeneration_takes_less_time_than_writing_its_nodes_as_pairs():
     nodes = listed[np.sort(np.unique(listed, return_index=True)[1])]  # as a mesh is numbered: in pieces
     pairs, regenerated = [], []
     for _ in range(9):
-        start = time.perf_counter()
+        start = time.process_time()
         buffer[nodes] = values
-        middle = time.perf_counter()
+        middle = time.process_time()
         regenerate(mesh, structure, out=buffer)
         pairs.append(middle - start)
-        regenerated.append(time.perf_counter() - middle)
+        regenerated.append(time.process_time() - middle)
     assert min(regenerated) < 0.8 * min(pairs)
 
 

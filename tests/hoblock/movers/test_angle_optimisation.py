@@ -268,9 +268,9 @@ def test_a_move_takes_a_few_milliseconds(wall_ramm, rig):
     positions = [run.driven_at(s) for s in (0.01, 0.02)]
     times = []
     for position in itertools.islice(itertools.cycle(positions), 20):
-        start = time.perf_counter()
+        start = time.process_time()
         run.mover.move(run.vertices, position)
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     assert len(run.mover.free) == 28
     assert min(times) < 0.02  # 0.002 on an idle machine
 
