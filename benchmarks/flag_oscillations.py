@@ -146,7 +146,7 @@ def draw_errors(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
     import matplotlib.pyplot as plt
 
     scenes = sorted({row["reference"] for row in rows})
-    figure, axes = plt.subplots(len(scenes), 4, figsize=(14, 3.4 * len(scenes)), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(len(scenes), 4, figsize=(16, 3.4 * len(scenes)), squeeze=False, layout="constrained")
     for scene, line in zip(scenes, axes, strict=True):
         own = [row for row in rows if row["reference"] == scene]
         for name, axis in zip(NAMES, line, strict=True):
@@ -159,7 +159,7 @@ def draw_errors(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
                 xscale="log", title=f"{scene}: amplitude of {name}", xlabel="CPU seconds", ylabel="difference in %"
             )
             axis.set_ylim(bottom=0.0)
-        line[-1].legend(fontsize=6, loc="upper right")
+        line[-1].legend(fontsize=7, loc="center left", bbox_to_anchor=(1.02, 0.5))
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
