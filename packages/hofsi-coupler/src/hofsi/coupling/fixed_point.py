@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 __all__ = ["FixedPoint", "Flow", "Solution"]
 
-_PASSES = 2  # times the most iterations that flows may take that turn out to be other ones when they are completed
+_PASSES = 2  # times the most iterations of one linearisation: a step whose flow is linearised again has taken them
 _INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
 
 
@@ -167,7 +167,7 @@ class FixedPoint:
         response: LoadResponse | None = None
         residuals, watch = Residuals(np.inf, np.inf), StallWatch()
         verdict: Verdict = ""
-        iteration = before = 0  # in all, before the flow was linearised again
+        iteration = before = 0  # with this linearisation of the flow, with those before it
         while iteration < settings.max_iterations and before < _PASSES * settings.max_iterations:
             iteration += 1
             now = flow(d)
