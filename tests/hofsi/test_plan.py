@@ -305,3 +305,34 @@ def test_a_solid_alone_is_not_said_to_take_backward_differences_if_it_does_not(
     assert "backward differences" in items["bdf2"]["time"]
     assert "backward differences" not in items["energy-momentum"]["time"]
     assert "midpoint rule" in items["energy-momentum"]["solid in time"]
+
+
+def test_blocks_that_cannot_move_keep_their_matrices() -> None:
+    rule = 'mover={type="rule", vertex=[{names=["r1t"], x=0, y="0.5*dy_T5"}]}'
+    case = load_case(EXAMPLES[0].parent / "fsi3.toml", [rule, "mesh.order=2", "time.end=0.008"])
+    found = re.match(r"(\d+) blocks of (\d+) cannot move: ", _skipped(plan(case), "motion of blocks"))
+    assert found is not None
+    still, blocks = map(int, found.groups())
+    assert 0 < still < blocks == 52
+    problem = _run(case)
+    assert problem.fluid is not None
+    topology = problem.fluid.structure.topology
+    flag = [topology.vertex(f"{side}{k}") for side in "TB" for k in range(6)]
+    standing = ~np.isin(topology.quads, [*flag, topology.vertex("r1t")]).any(axis=1)
+    assert still <= standing.sum()  # some of these have an edge that may bend
+    elements = topology.counts[topology.block_edges].reshape(blocks, -1)[:, :2].prod(axis=1)
+    # Four steps; the second has another formula than the first, and all matrices are new.
+    assert 2 * np.sort(elements)[:still].sum() <= problem.counts["fluid"].elements_kept <= 2 * elements[standing].sum()
+
+
+def test_all_blocks_of_the_examples_move() -> None:
+    assert "motion of blocks" not in _names(plan(load_case(EXAMPLES[0].parent / "fsi3.toml")).skipped)
+
+
+@pytest.mark.parametrize("lag", [True, False])
+def test_earlier_factors_serve_a_nonlinear_fluid(read_changed: Read, fluid_alone: str, lag: bool) -> None:
+    newton = ("viscosity = 0.01", 'viscosity = 0.01\nconvection = "newton"')
+    case = read_changed(newton, ("[coupling]", f"[linear]\nlag = {lag}".lower()), SHORT, text=fluid_alone)
+    counts = _run(case).counts["fluid"]
+    assert ("fluid's factors" in _names(plan(case).skipped)) == lag
+    assert (counts.factorisations < counts.iterations) == lag

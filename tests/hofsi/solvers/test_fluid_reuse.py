@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hofsi import case
+from hofsi.errors import MeshMotionError
 
 NOBODY = np.zeros((0, 2))
 
@@ -157,3 +158,46 @@ def test_nothing_is_kept_of_a_mesh_that_has_moved_on(flows, model):
     again = solver.begin_steady(solver.initial_state(), solver.mesh.points).solve(NOBODY)[0]
     np.testing.assert_allclose(again, before.velocity, rtol=0.0, atol=1e-11)
     assert np.abs(found - before.velocity).max() > 0.05
+
+
+def test_elements_that_stand_still_keep_their_matrices(flows):
+    """Those of a mesh that moves in part are, to the bit, the ones that are made anew of all elements."""
+    mesh = flows.grid(3, columns=6, rows=4)
+    conditions = [case.NoSlip(("left", "bottom", "top")), case.DoNothing(("right",))]
+    solver = flows.solver(mesh, conditions)
+    for time in (0.0, 0.1, 0.2, 0.3):
+        points = mesh.points.copy()
+        points[:, 0] += time * np.maximum(0.0, points[:, 0] - 0.55) ** 2
+        here, afresh = solver.constant_terms(points, 2.0).ask(), flows.solver(mesh, conditions)
+        matrices = afresh.constant_terms(points, 2.0).ask().matrices
+        for elements in (slice(0, 5), slice(5, 13), slice(13, 24)):
+            np.testing.assert_array_equal(here.matrices(elements), matrices(elements))
+            np.testing.assert_array_equal(solver.geometry(points).x[elements], afresh.geometry(points).x[elements])
+            np.testing.assert_array_equal(
+                solver.geometry(points).J_inv[elements], afresh.geometry(points).J_inv[elements]
+            )
+    moved = (mesh.points[mesh.cells][:, :, 0] > 0.55).any(axis=1)
+    assert 6 < moved.sum() < 18
+    assert solver.counts.elements_kept == 3 * (~moved).sum()
+
+
+def test_another_step_size_makes_all_matrices_anew(flows):
+    mesh = flows.grid(2)
+    solver = flows.solver(mesh, [case.NoSlip(("left",))])
+    points, all_elements = mesh.points.copy(), slice(0, len(mesh.cells))
+    solver.constant_terms(mesh.points, 2.0).ask().matrices(all_elements)
+    found = solver.constant_terms(points, 3.0).ask().matrices(all_elements)
+    afresh = flows.solver(mesh, [case.NoSlip(("left",))]).constant_terms(points, 3.0).ask().matrices(all_elements)
+    np.testing.assert_array_equal(found, afresh)
+    assert solver.counts.elements_kept == 0
+
+
+def test_an_element_that_turns_over_is_named_by_its_number(flows):
+    mesh = flows.grid(2, jitter=0.0)
+    solver = flows.solver(mesh, [case.NoSlip(("left",))])
+    solver.geometry(mesh.points)
+    points = mesh.points.copy()
+    last = mesh.cells[-1]
+    points[last] = points[last][:, ::-1]  # x and y exchanged
+    with pytest.raises(MeshMotionError, match=rf"element {len(mesh.cells) - 1}: det J"):
+        solver.geometry(points)

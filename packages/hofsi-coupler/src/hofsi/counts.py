@@ -17,6 +17,8 @@ class Counts:
         Geometry factors of a whole mesh.
     constant_assemblies : int
         Element matrices without the terms that change from iteration to iteration.
+    elements_kept : int
+        Elements of new meshes that stand where they stood: these matrices are kept.
     assemblies : int
         Element matrices that are factorised.
     factorisations, solves : int
@@ -40,6 +42,7 @@ class Counts:
 
     geometries: int = 0
     constant_assemblies: int = 0
+    elements_kept: int = 0
     assemblies: int = 0
     factorisations: int = 0
     solves: int = 0

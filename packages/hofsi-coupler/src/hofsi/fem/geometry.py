@@ -33,6 +33,12 @@ class Geometry:
     weights: Array
     J_inv: Array
 
+    def with_elements(self, elements: Index, geometry: Geometry) -> Geometry:
+        """Return the same with other factors for some elements."""
+        x, weights, J_inv = self.x.copy(), self.weights.copy(), self.J_inv.copy()
+        x[elements], weights[elements], J_inv[elements] = geometry.x, geometry.weights, geometry.J_inv
+        return Geometry(x, weights, J_inv)
+
 
 def _jacobian(X: Array, table: ElementTable) -> Array:
     q, n, _ = table.dN.shape
@@ -49,7 +55,7 @@ def _inverse(J: Array) -> tuple[Array, Array]:
     return det_J, J_inv
 
 
-def element_geometry(X: Array, table: ElementTable) -> Geometry:
+def element_geometry(X: Array, table: ElementTable, numbers: Index | None = None) -> Geometry:
     """Geometry factors of elements with node positions X.
 
     Parameters
@@ -57,6 +63,8 @@ def element_geometry(X: Array, table: ElementTable) -> Geometry:
     X : ndarray, shape (e, i, 2)
     table : ElementTable
         The basis of the geometry.
+    numbers : ndarray, shape (e,), optional
+        Of the elements, for messages; by default from 0.
 
     Raises
     ------
@@ -66,7 +74,10 @@ def element_geometry(X: Array, table: ElementTable) -> Geometry:
     det_J, J_inv = _inverse(_jacobian(X, table))
     if not (det_J > 0.0).all():
         bad = int(np.argmin(np.where(np.isfinite(det_J), det_J, -np.inf).min(axis=1)))
-        raise MeshMotionError(f"element {bad}: det J = {det_J[bad].min():.3g} at a quadrature point; must be positive.")
+        number = bad if numbers is None else int(numbers[bad])
+        raise MeshMotionError(
+            f"element {number}: det J = {det_J[bad].min():.3g} at a quadrature point; must be positive."
+        )
     return Geometry(table.N @ X, det_J * table.weights, J_inv)
 
 

@@ -13,12 +13,14 @@ from hoblock.building import build_structure
 from hoblock.errors import HoblockError
 from hoblock.generate import generate
 from hoblock.mesh import QuadMesh
-from hofsi.case import Case
+from hoblock.motion import driven_edges
+from hofsi.case import Case, RuleSettings
 from hofsi.errors import CaseError
+from hofsi.movers import placed_vertices
 
 Index = NDArray[np.int64]
 
-__all__ = ["Meshes", "meshes_of"]
+__all__ = ["Meshes", "meshes_of", "still_blocks"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +56,23 @@ def meshes_of(case: Case) -> Meshes:
     named = topology.edge_groups
     moving = [int(edge) for motion in case.motions for name in motion.on for edge in named[name]]
     return Meshes(fluid, solid, (len(wet), nodes), np.unique(np.array([*coupled, *moving], dtype=np.int64)))
+
+
+def still_blocks(case: Case, meshes: Meshes) -> int:
+    """How many of the fluid's blocks cannot move, where its boundary moves: no vertex does, and no edge may bend."""
+    assert meshes.fluid is not None
+    structure, mesh = meshes.fluid
+    driven = driven_edges(structure, mesh.order, meshes.driven)
+    if isinstance(case.mover, RuleSettings):  # vertices without a rule stay
+        named = [structure.topology.vertex(rule.name) for rule in case.mover.vertices]
+        moving = np.array([*driven.vertices, *named], dtype=np.int64)
+    else:
+        moving = np.concatenate([driven.vertices, *placed_vertices(case.mover, structure, driven)])
+    topology = structure.topology
+    # Edges opposite to a driven one, and those opposite to them, may take on its shape.
+    bending = np.isin(topology.chains, topology.chains[meshes.driven])
+    still = ~np.isin(topology.quads, moving).any(axis=1) & ~bending[topology.block_edges].any(axis=1)
+    return int(still.sum())
 
 
 def _part(structure: BlockStructure, groups: Sequence[str], order: int) -> tuple[BlockStructure, QuadMesh]:

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 
 from hofsi.case import Case, Steady, Unsteady
 from hofsi.linear.choice import Choice
-from hofsi.plan.facts import convection_of_steps, has_series, is_coupled, iterates, moves
-from hofsi.plan.meshes import Meshes
+from hofsi.plan.facts import convection_of_steps, counted, has_series, is_coupled, iterates, moves
+from hofsi.plan.meshes import Meshes, still_blocks
 from hofsi.plan.report import Item
 from hofsi.plan.sizes import linear_solvers
 
@@ -18,7 +18,7 @@ def skipped_items(case: Case, meshes: Meshes) -> Iterator[Item]:
     """Everything that the case does not need."""
     yield from _without_material(case)
     yield from _without_bodies(case)
-    yield from _without_motion(case)
+    yield from _without_motion(case, meshes)
     yield from _without_iteration(case, linear_solvers(case, meshes))
     yield from _without_output(case)
     yield from _unused_tables(case)
@@ -39,8 +39,14 @@ def _without_bodies(case: Case) -> Iterator[Item]:
         yield Item("coupling", "no solid" if case.fluid else "no fluid")
 
 
-def _without_motion(case: Case) -> Iterator[Item]:
-    if case.fluid is None or moves(case):
+def _without_motion(case: Case, meshes: Meshes) -> Iterator[Item]:
+    if case.fluid is None or meshes.fluid is None:
+        return
+    if moves(case):
+        still, blocks = still_blocks(case, meshes), len(meshes.fluid[0].topology.quads)
+        if still:
+            factors = "geometry factors and matrices without convection are kept"
+            yield Item("motion of blocks", f"{counted(still, 'block')} of {blocks} cannot move: {factors}")
         return
     yield Item(
         "mesh motion",
@@ -64,7 +70,10 @@ def _without_iteration(case: Case, solvers: Mapping[str, Choice]) -> Iterator[It
         if fluid.model == "stokes":
             kept = "" if moves(case) else f", and its {factor} is kept"
             yield Item("convection", f"Stokes: the matrix does not depend on the velocity{kept}")
-        elif not iterates(case, fluid):
+        elif iterates(case, fluid):
+            if case.linear.lag and solvers["fluid"].solver == "direct":
+                yield Item("fluid's factors", "earlier ones serve later iterations and steps while that is cheap")
+        else:
             meshes = ", however many coupling iterations it takes" if _one_mesh_a_step(case) else ""
             again = convection_of_steps(case, fluid) == "linearised"
             unless = ", unless the flow changes at once, as after an impulsive start" if again else ""

@@ -34,6 +34,7 @@ from hofsi.solvers.fluid_system import FluidSystem, SystemOrigin, factorised, fl
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 __all__ = ["FluidEquations"]
 
@@ -94,9 +95,22 @@ class FluidEquations:
     def geometry(self, points: Array) -> Geometry:
         """Geometry factors, kept while the mesh stands still."""
         if self._geometry is None or self._geometry[0] is not points:
-            self._geometry = (points, element_geometry(points[self.space.velocity_cells], self.space.velocity))
+            self._geometry = (points, self._new_geometry(points))
             self.counts.geometries += 1
         return self._geometry[1]
+
+    def _new_geometry(self, points: Array) -> Geometry:
+        cells, table = self.space.velocity_cells, self.space.velocity
+        if self._geometry is None:
+            return element_geometry(points[cells], table)
+        moved = np.flatnonzero(~self._standing(self._geometry[0], points))
+        if len(moved) == len(cells):
+            return element_geometry(points[cells], table)
+        return self._geometry[1].with_elements(moved, element_geometry(points[cells[moved]], table, moved))
+
+    def _standing(self, before: Array, points: Array) -> Mask:
+        """Elements (e,) all of whose nodes are where they were."""
+        return np.asarray((before == points).all(axis=1)[self.space.velocity_cells].all(axis=1))
 
     def constant_terms(self, points: Array, rate: float) -> ConstantTerms:
         """Element matrices without convection, the same object while mesh and step size do not change."""
@@ -111,6 +125,10 @@ class FluidEquations:
                 rate * fluid.density,
                 sides,
             )
+            if self._constant is not None and self._constant[1] == rate:
+                standing = self._standing(self._constant[0], points)
+                terms.take_over(self._constant[2], standing)
+                self.counts.elements_kept += int(standing.sum())
             self._constant = (points, rate, terms)
             self.counts.constant_assemblies += 1
         return self._constant[2]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hofsi.fem.element_matrices import MatrixMaker, batches
+from hofsi.fem.element_matrices import MatrixMaker
 from hofsi.fem.geometry import Geometry, physical_gradients
 from hofsi.fem.spaces import TaylorHood
 from hofsi.kernels import navier_stokes as kernel
@@ -16,8 +16,9 @@ from hofsi.kernels import tensor_products
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
-__all__ = ["Coefficients", "ConstantTerms", "MatrixOrigin", "SideTerm", "element_matrices"]
+__all__ = ["Coefficients", "ConstantTerms", "KeptBlocks", "MatrixOrigin", "SideTerm", "element_matrices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,11 +86,42 @@ class MatrixOrigin:
     newton: bool
 
 
+class KeptBlocks:
+    """Blocks of elements that stand still, by element.
+
+    Parameters
+    ----------
+    space : TaylorHood
+
+    Attributes
+    ----------
+    known : ndarray of bool, shape (e,)
+    """
+
+    def __init__(self, space: TaylorHood) -> None:
+        e, n = space.velocity_cells.shape
+        self.known = np.zeros(e, dtype=np.bool_)
+        # Memory that is never written to is never used.
+        self._velocity = np.empty((2, 2, e, n, n))
+        self._divergence = np.empty((2, e, space.pressure_cells.shape[1], n))
+
+    def blocks(
+        self, elements: slice, standing: Mask, make: Callable[[Index], tuple[Array, Array]]
+    ) -> tuple[Array, Array]:
+        """Blocks of a batch of elements, made where they are not known, and known from then on where they stand."""
+        missing = elements.start + np.flatnonzero(~self.known[elements])
+        if missing.size:
+            self._velocity[:, :, missing], self._divergence[:, missing] = make(missing)
+            self.known[missing] = standing[missing]
+        return self._velocity[:, :, elements], self._divergence[:, elements]
+
+
 class ConstantTerms:
     """Viscosity, inertia, pressure and continuity on one mesh.
 
-    Their blocks are made when they are asked for, and kept when they are for the second time: on a mesh that moves in
-    every step it takes less time to make them in the processor's cache than to fetch them from memory.
+    Their blocks are made when they are asked for. Those of elements that stand still are kept, and all of them when
+    they are asked for the second time: on elements that move in every step it takes less time to make them in the
+    processor's cache than to fetch them from memory.
 
     Parameters
     ----------
@@ -116,33 +148,35 @@ class ConstantTerms:
         self._geometry, self._viscosity, self._grad_div, self._inertia = geometry, viscosity, grad_div, inertia
         self._sides = sides
         self._asked = 0
-        self._kept: tuple[Array, Array] | None = None
+        self._standing: Mask = np.zeros(len(space.velocity_cells), dtype=np.bool_)
+        self._kept: KeptBlocks | None = None
+
+    def take_over(self, before: ConstantTerms, standing: Mask) -> None:
+        """Keep what other terms, which differ by the mesh alone, have of elements (e,) whose nodes did not move."""
+        if not standing.any():
+            return
+        self._standing, self._kept = standing, before._kept or KeptBlocks(self.space)
+        self._kept.known &= standing
 
     def ask(self) -> ConstantTerms:
         """Return the terms themselves, which somebody is going to use for all elements."""
         self._asked += 1
         if self._asked == 2:
-            self._keep()
+            self._standing = np.ones(len(self.space.velocity_cells), dtype=np.bool_)
+            self._kept = self._kept or KeptBlocks(self.space)
         return self
-
-    def _keep(self) -> None:
-        e, n = self.space.velocity_cells.shape
-        velocity, divergence = np.empty((2, 2, e, n, n)), np.empty((2, e, self.space.pressure_cells.shape[1], n))
-        for batch in batches(e, self.space.dofs.shape[1]):
-            velocity[:, :, batch], divergence[:, batch] = self._made(batch)
-        self._kept = velocity, divergence
 
     def blocks(self, elements: slice) -> tuple[Array, Array]:
         """Blocks of the velocity's components (2, 2, m, n, n) and of continuity (2, m, k, n), not to be written to."""
-        if self._kept is not None:
-            return self._kept[0][:, :, elements], self._kept[1][:, elements]
-        return self._made(elements)
+        if self._kept is None or not self._standing[elements].any():
+            return self._made(elements)
+        return self._kept.blocks(elements, self._standing, self._made)
 
     def matrices(self, elements: slice) -> Array:
         """Element matrices (m, k, k)."""
         return self.space.matrices(*self.blocks(elements))
 
-    def _made(self, elements: slice) -> tuple[Array, Array]:
+    def _made(self, elements: slice | Index) -> tuple[Array, Array]:
         space, whole = self.space, self._geometry
         geometry = Geometry(whole.x[elements], whole.weights[elements], whole.J_inv[elements])
         dNx, dNy = physical_gradients(geometry, space.velocity)
@@ -158,7 +192,7 @@ class ConstantTerms:
             mass = tensor_products.mass(self.products, self._inertia * geometry.weights)
             velocity[0, 0] += mass
             velocity[1, 1] += mass
-        _add(velocity, self._sides, elements)
+        _add(velocity, self._sides, elements, len(whole.weights))
         return velocity, np.stack(kernel.divergence(space.pressure.N, dNx, dNy, geometry.weights))
 
 
@@ -177,15 +211,20 @@ def element_matrices(constant: ConstantTerms, changing: Coefficients) -> MatrixM
         convection = tensor_products.transport(products, changing.along_xi[elements], changing.along_eta[elements])
         velocity[0, 0] += convection
         velocity[1, 1] += convection
-        _add(velocity, changing.sides, elements)
+        _add(velocity, changing.sides, elements, len(changing.along_xi))
         return space.matrices(velocity, divergence)
 
     return made
 
 
-def _add(velocity: Array, sides: Sequence[SideTerm], elements: slice) -> None:
-    """Add what the sides of a batch of elements contribute to its blocks (2, 2, m, n, n)."""
+def _add(velocity: Array, sides: Sequence[SideTerm], elements: slice | Index, count: int) -> None:
+    """Add what the sides of some of ``count`` elements contribute to their blocks (2, 2, m, n, n)."""
+    if not sides:
+        return
+    place = np.full(count, -1)
+    place[elements] = np.arange(velocity.shape[2])
     for term in sides:
-        here = (term.elements >= elements.start) & (term.elements < elements.stop)
+        of = place[term.elements]
+        here = of >= 0
         if here.any():
-            np.add.at(velocity[term.row, term.column], term.elements[here] - elements.start, term.block[here])
+            np.add.at(velocity[term.row, term.column], of[here], term.block[here])
