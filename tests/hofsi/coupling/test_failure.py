@@ -5,7 +5,7 @@ import pytest
 
 from hofsi.case import CouplingSettings
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
-from hofsi.coupling.failure import coupling_failure, solid_failure
+from hofsi.coupling.failure import coupling_failure, in_iteration, solid_failure
 from hofsi.coupling.stall import StallWatch
 from hofsi.errors import AddedMassError, CouplingError, NewtonError
 
@@ -47,6 +47,11 @@ def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils",
             r"noise of the solvers: raise coupling.tolerance or coupling.for",
         ),
         (
+            {"residuals": (5e-6, 3e-6), "gain": 3.0},  # still falling, for all that is known
+            "max_iterations",
+            r"expected below 0.0001. The fluid answers .* Raise coupling.max_iterations, or make the solid",
+        ),
+        (
             {"acceleration": "aitken"},
             "max_iterations",
             r'Lower time.dt, or set coupling.acceleration = "iqn-ils", or raise',
@@ -82,11 +87,27 @@ def test_the_added_mass_is_an_error_of_its_own():
 
 def test_solids_that_fail_under_the_iterates_of_a_heavy_fluid_are_not_blamed():
     error = NewtonError("Newton's method stopped.", "max_iterations", "solid, t = 1")
-    assert solid_failure(error, watch_of(4.0), "here") is error  # accelerations bear that
-    found = solid_failure(error, watch_of(30.0), "here")
+    settings = CouplingSettings()
+    assert solid_failure(error, watch_of(4.0), settings, "here", steady=False) is error  # accelerations bear that
+    found = solid_failure(error, watch_of(30.0), settings, "here", steady=False)
     assert isinstance(found, AddedMassError)
     assert (found.gain, found.reason) == (pytest.approx(30.0), "diverged")
     with pytest.raises(
         AddedMassError, match=r"here: diverging: after 3 iterations the solids bear .*Newton.*added mass"
     ):
         raise found
+
+
+def test_where_fluid_and_solid_are_not_solved_together_that_is_a_way_out():
+    error = NewtonError("Newton's method stopped.", "max_iterations", "solid, t = 1")
+    apart = CouplingSettings(condensed=False)
+    found = solid_failure(error, watch_of(30.0), apart, "here", steady=False)
+    assert "Leave coupling.condensed on, or make the solid heavier" in str(found)
+    assert in_iteration(found, apart, steady=False) is found
+    told = in_iteration(error, apart, steady=False)
+    assert isinstance(told, NewtonError)
+    assert (told.reason, told.where) == (error.reason, error.where)
+    assert str(told).startswith(f"{error} That was in an iteration between fluid and solid")
+    assert "leave coupling.condensed on" in str(told)
+    for settings, steady in ((CouplingSettings(), False), (apart, True)):
+        assert in_iteration(error, settings, steady=steady) is error

@@ -7,7 +7,7 @@ from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.stall import StallWatch, Verdict
 from hofsi.errors import AddedMassError, ConvergenceError, CouplingError
 
-__all__ = ["coupling_failure", "solid_failure"]
+__all__ = ["coupling_failure", "in_iteration", "solid_failure"]
 
 _NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers, ...
 _NEARLY_THERE = 1e-7  # ... and so is everything, whatever the force says, when the displacement is as near as that
@@ -41,7 +41,8 @@ def coupling_failure(
     """
     problem = f"{_happened(verdict, watch)}: {_left(residuals, test)}."
     reason = {"": "max_iterations", "stalled": "stalled", "diverging": "diverged"}[verdict]
-    if residuals.largest < _NEARLY or residuals.displacement < _NEARLY_THERE:
+    stuck = bool(verdict) and residuals.largest < _NEARLY  # otherwise the iterations may have been too few
+    if stuck or residuals.displacement < _NEARLY_THERE:
         way = (
             "That is close to the noise of the solvers: raise coupling.tolerance or coupling.force_tolerance, or lower "
             "nonlinear.tolerance."
@@ -56,7 +57,9 @@ def coupling_failure(
     return _added_mass(problem, more, reason, where, watch)
 
 
-def solid_failure(error: ConvergenceError, watch: StallWatch, where: str) -> ConvergenceError:
+def solid_failure(
+    error: ConvergenceError, watch: StallWatch, settings: CouplingSettings, where: str, *, steady: bool
+) -> ConvergenceError:
     """Return what is said of solids that found no equilibrium under a load of the coupling's iteration.
 
     If the iterates led there because the fluid's added mass drives them apart, that; otherwise the error itself.
@@ -67,14 +70,26 @@ def solid_failure(error: ConvergenceError, watch: StallWatch, where: str) -> Con
         Of the solids.
     watch : StallWatch
         With all iterations before that.
+    settings : CouplingSettings
     where : str
+    steady : bool
     """
     if watch.gain <= _DOMINANT:
         return error
     problem = (
         f"diverging: after {watch.iterations} iterations the solids bear the fluid's load no more ({error.problem})"
     )
-    return _added_mass(problem, [], "diverged", where, watch)
+    return _added_mass(problem, _more("diverging", settings, steady=steady), "diverged", where, watch)
+
+
+def in_iteration(error: ConvergenceError, settings: CouplingSettings, *, steady: bool) -> ConvergenceError:
+    """Return the error of a fluid, solid or mesh that was given an iterate of the coupling, which may be the cause."""
+    if settings.condensed or steady or isinstance(error, CouplingError):
+        return error
+    return error.extended(
+        "That was in an iteration between fluid and solid, which may have gone astray: leave coupling.condensed on, "
+        "and they are solved together."
+    )
 
 
 def _added_mass(problem: str, ways: list[str], reason: str, where: str, watch: StallWatch) -> AddedMassError:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
-from hofsi.coupling.failure import coupling_failure, solid_failure
+from hofsi.coupling.failure import coupling_failure, in_iteration, solid_failure
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.relaxation import Accelerator
@@ -146,9 +146,12 @@ class FixedPoint:
         """
         try:
             return self._solve(d, flow, solid_step, where, share, steady)
-        except ConvergenceError:
+        except ConvergenceError as error:
             self.accelerator.forget()
-            raise
+            told = in_iteration(error, self._settings, steady=steady)
+            if told is error:
+                raise
+            raise told from error
 
     def _solve(
         self,
@@ -177,7 +180,7 @@ class FixedPoint:
                     response = self._response(now, d, response)
                     displacement = solid_step.solve(load, displacement, tolerance=inner, response=response)
             except ConvergenceError as error:
-                raise solid_failure(error, watch, where) from error
+                raise solid_failure(error, watch, settings, where, steady=steady) from error
             image = displacement[self._interface.solid]
             residual = image - d
             if not (np.isfinite(residual).all() and np.isfinite(now.force).all()):
