@@ -20,6 +20,7 @@ from hofsi.case import (
     Roller,
     Slip,
     Solid,
+    SolidIntegral,
     Steady,
     TimeFunction,
     Traction,
@@ -125,10 +126,11 @@ def _check_quantities(case: Case) -> None:
     for quantity in case.quantities:
         if isinstance(quantity, Force | TimeFunction):
             continue  # of the fluid or of solids, where its edges are; of nothing
-        needs_solid = isinstance(quantity, Probe) and quantity.of == "solid"
+        needs_solid = isinstance(quantity, SolidIntegral) or (isinstance(quantity, Probe) and quantity.of == "solid")
         if needs_solid and not case.solids:
             hint = 'Remove the quantity, or set of = "fluid"'
-            raise CaseError(f"a probe of the solid, and there is no [[solid]]. {hint}", quantity.place)
+            kind = "a probe" if isinstance(quantity, Probe) else "an energy"
+            raise CaseError(f"{kind} of the solid, and there is no [[solid]]. {hint}", quantity.place)
         if not needs_solid and case.fluid is None:
             of_solids_too = isinstance(quantity, Probe) and quantity.field == "velocity"
             hint = 'Set of = "solid"' if of_solids_too else "Remove the quantity"

@@ -75,6 +75,8 @@ def simulate(problem: Problem, after: StepRecord | None = None) -> Iterator[Step
                 new, coupling = problem.march.step(state, steps, time)
                 error = None if errors is None else errors.estimate(_fields(new), steps)
         except ConvergenceError as failure:
+            if failure.reason == "rounding":
+                raise  # half the step has four times as much of it
             if _is_worse(failure, last):
                 raise _got_worse(failure, size) from failure
             last = failure

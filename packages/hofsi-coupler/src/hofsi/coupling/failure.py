@@ -7,7 +7,7 @@ from hofsi.coupling.convergence import ConvergenceTest, Residuals
 from hofsi.coupling.stall import StallWatch, Verdict
 from hofsi.errors import AddedMassError, ConvergenceError, CouplingError
 
-__all__ = ["coupling_failure", "in_iteration", "solid_failure"]
+__all__ = ["coupling_failure", "in_iteration", "rounding_failure", "solid_failure"]
 
 _NEARLY = 1e-5  # residuals below it that do not fall any more are in the noise of the solvers, ...
 _NEARLY_THERE = 1e-7  # ... and so is everything, whatever the force says, when the displacement is as near as that
@@ -80,6 +80,16 @@ def solid_failure(
         f"diverging: after {watch.iterations} iterations the solids bear the fluid's load no more ({error.problem})"
     )
     return _added_mass(problem, _more("diverging", settings, steady=steady), "diverged", where, watch)
+
+
+def rounding_failure(noise: float, where: str) -> CouplingError:
+    """Return the error of a step so small that rounding of positions is a part ``noise`` of the fluid's load."""
+    problem = (
+        f"the step is so small that rounding of positions makes {100.0 * noise:.2g} % of the fluid's load, for "
+        "accelerations are differences of positions over dt**2. Take larger steps: raise time.dt, or lower "
+        "time.halvings."
+    )
+    return CouplingError(problem, "rounding", where)
 
 
 def in_iteration(error: ConvergenceError, settings: CouplingSettings, *, steady: bool) -> ConvergenceError:

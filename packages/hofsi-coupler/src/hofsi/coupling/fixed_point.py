@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hofsi import case
 from hofsi.clock import Clock
 from hofsi.coupling.convergence import ConvergenceTest, Residuals
-from hofsi.coupling.failure import coupling_failure, in_iteration, solid_failure
+from hofsi.coupling.failure import coupling_failure, in_iteration, rounding_failure, solid_failure
 from hofsi.coupling.interface import Interface
 from hofsi.coupling.load import InterfaceLoad
 from hofsi.coupling.relaxation import Accelerator
@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 __all__ = ["FixedPoint", "Flow", "Solution"]
 
 _PASSES = 2  # times the most iterations of one linearisation: a step whose flow is linearised again has taken them
+_DROWNED = 0.1  # of the load: with more noise than this it is none, whatever the iterations say
 _INNER = 1e-2  # of the coupling's tolerance: the solid's, at most, so that coupling does not stall in its noise
 
 
@@ -188,6 +189,9 @@ class FixedPoint:
             residuals = self.test.residuals(image, residual, now.force)
             excess = self.test.excess(residuals)
             if now.converged and excess <= 1.0:
+                noise = self._noise(now, response, d)
+                if noise > _DROWNED:
+                    raise rounding_failure(noise, where)
                 fluid, mesh = now.finish()
                 if self.test.confirms(now.force, self._load.evaluate(fluid)):
                     self.accelerator.end_step()
@@ -209,7 +213,22 @@ class FixedPoint:
                 continue
             with self._clock.phase("coupling"):
                 d = self.accelerator.next(d.ravel(), residual.ravel()).reshape(-1, 2)
+        noise = self._noise(now, response, d)
+        if noise > settings.force_tolerance:
+            raise rounding_failure(noise, where)
         raise coupling_failure(verdict, residuals, self.test, watch, settings, where, steady=steady)
+
+    def _noise(self, flow: Flow, response: LoadResponse | None, d: Array) -> float:
+        """Rounding error of the load relative to it, as far as the fluid tells how it answers to displacements.
+
+        The fluid's load has accelerations in it, and those are differences of positions over dt².
+        """
+        if response is None:
+            return 0.0
+        places = np.abs(self._solid.mesh.points) if not flow.affine else np.zeros(self._solid.mesh.points.shape)
+        places[self._interface.solid] += np.abs(d)
+        size = float(np.linalg.norm(flow.force))
+        return response.rounding(places) / size if size else 0.0
 
     def _response(self, flow: Flow, d: Array, last: LoadResponse | None) -> LoadResponse | None:
         """How the load answers while the solid finds its displacement, if the fluid tells and the solid takes it."""

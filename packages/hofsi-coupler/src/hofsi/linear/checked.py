@@ -93,8 +93,8 @@ class CheckedSolver:
         if not self._acceptable(x, residual, size):
             raise LinearSolverError(
                 f"relative residual {residual:.2g} after LU with full pivoting; expected below "
-                f"{_ACCEPT:g}. The matrix is close to singular. A boundary condition may be "
-                "missing."
+                f"{_ACCEPT:g}. The matrix is close to singular: a boundary condition may be missing, or a body be so "
+                "thin, or its elements so flat, that double precision does not tell its bending from rounding."
             )
         return x
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from hofsi.build import Problem
 from hofsi.case import Steady
 from hofsi.notes.changes import fast_changes
+from hofsi.notes.locking import locking
 
 __all__ = ["notes"]
 
@@ -13,7 +14,8 @@ def notes(problem: Problem) -> tuple[str, ...]:
     """Say what is decided for the user, and what the numbers will suffer from.
 
     That the pressure of an enclosed fluid is the one with the mean 0; conditions that contradict where edges meet; an
-    initial velocity that the conditions or continuity contradict; expressions that change faster than the time steps.
+    initial velocity that the conditions or continuity contradict; solids whose elements lock; expressions that change
+    faster than the time steps.
 
     Parameters
     ----------
@@ -41,6 +43,7 @@ def notes(problem: Problem) -> tuple[str, ...]:
         found += contradictions(problem.fluid, first)
         if not isinstance(case.time, Steady):
             found += start(problem.fluid, case.time.start)
+    found += locking(case)
     if not isinstance(case.time, Steady):
         found += fast_changes(case, case.time)
     return tuple(found)

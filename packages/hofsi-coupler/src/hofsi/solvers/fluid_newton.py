@@ -139,8 +139,8 @@ class FluidNewton:
         if not stop:
             raise NewtonError(
                 f"Newton's method stopped at a relative residual of {norm / scale:.2g} after {limit} iterations; "
-                f"expected below {tolerance:g}. Refine the mesh, lower the Reynolds number, march in time, or "
-                'use convection = "picard".',
+                f"expected below {tolerance:g}. Refine the mesh, lower the Reynolds number, "
+                f'{"take smaller steps" if self._rate else "march in time"}, or use convection = "picard".',
                 "max_iterations",
                 f"fluid, t = {self._time:g}",
             )
