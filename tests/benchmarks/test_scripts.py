@@ -3,113 +3,20 @@
 from __future__ import annotations
 
 import importlib
-import io
-import json
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import redirect_stdout
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-FOLDER = Path(__file__).resolve().parent.parent / "benchmarks"
-TINY = {
-    "curve_accuracy": ["--orders", "1", "3", "--elements", "8", "16", "--kinds", "arc", "nurbs, degree 3", "spline"],
-    "flag_oscillations": ["fsi3", "--orders", "2", "--set", "time.end=0.01"],
-    "fluid_linear_solvers": ["--orders", "2", "--k", "2", "--problems", "stokes", "step 0.01"],
-    "fluid_order": ["--orders", "2", "--elements", "1", "2", "--meshes", "blocks", "pseudo-solid"],
-    "fsi_order": [
-        "--orders",
-        "2",
-        "--cases",
-        "piston",
-        "--geometries",
-        "extrapolated",
-        "--steps",
-        "10",
-        "20",
-        "--flap",
-        "6",
-        "12",
-        "24",
-    ],
-    "fluid_work_precision": ["--orders", "2", "4", "--counts", "1,2,6,2"],
-    "mesh_generation": ["--nodes", "2000", "--orders", "2", "--blocks", "1", "4", "--repeats", "2"],
-    "mesh_scaling": ["--nodes", "2000", "9000", "--order", "2", "--repeats", "2"],
-    "mesh_motion": [
-        "--steps",
-        "6",
-        "--orders",
-        "2",
-        "--elements",
-        "1",
-        "--tests",
-        "T3a",
-        "--layouts",
-        "cross4x",
-    ],
-    "mesh_motion_cost": ["--elements", "1", "--order", "2", "--repeats", "2"],
-    "mesh_motion_histograms": ["--elements", "1", "--order", "2", "--steps", "5"],
-    "mesh_motion_return": ["--cycles", "2", "--steps", "12", "--order", "2", "--elements", "1"],
-    "mesh_motion_smoothness": ["--steps", "12", "--halvings", "1", "--order", "2"],
-    "wall_ramm": ["--orders", "2", "--end", "0.03", "--movers", "barrier", "angles, published"],
-}
 
-DRAWN = (
-    "flag_oscillations",
-    "fluid_work_precision",
-    "mesh_motion",
-    "mesh_motion_histograms",
-    "mesh_motion_smoothness",
-    "wall_ramm",
-)
-HELPERS = ("_force_noise", "_precision", "_result", "_wall_ramm_pictures")
-PACKAGES = ("exact_fsi", "full_mesh_movers", "manufactured_flows", "motion_cases", "motion_contest")
+def test_every_script_has_a_test(tiny):
+    own = {path.stem.removeprefix("test_") for path in Path(__file__).parent.glob("test_*.py")} - {"scripts"}
+    scripts = (Path(__file__).parents[2] / "benchmarks").glob("[!_]*.py")
+    assert {script.stem for script in scripts} == {*tiny, *own}
 
 
-@dataclass(frozen=True)
-class Measured:
-    """What a benchmark returned, wrote and printed, and the folder of its files."""
-
-    result: Any
-    written: dict[str, Any]
-    printed: str
-    folder: Path
-
-
-@pytest.fixture(scope="module")
-def measured(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], Measured]]:
-    """A function that runs a benchmark on its smallest settings, each once."""
-    before, known = set(sys.modules), dict[str, Measured]()
-    sys.path.insert(0, str(FOLDER))
-
-    def run(name: str) -> Measured:
-        if name not in known:
-            folder = tmp_path_factory.mktemp(name)
-            file = folder / f"{name}.json"
-            picture = ["--picture", str(folder / f"{name}.png")] if name in DRAWN else []
-            with redirect_stdout(io.StringIO()) as printed:
-                result = importlib.import_module(name).main([*TINY[name], *picture, "--json", str(file)])
-            written = json.loads(file.read_text(encoding="utf-8"), parse_constant=lambda word: pytest.fail(word))
-            known[name] = Measured(result, written, printed.getvalue(), folder)
-        return known[name]
-
-    yield run
-    sys.path.remove(str(FOLDER))
-    for name in set(sys.modules) - before:
-        if name in (*HELPERS, *TINY) or name.partition(".")[0] in PACKAGES:
-            sys.modules.pop(name)
-
-
-def test_every_script_has_a_test():
-    assert {script.stem for script in FOLDER.glob("[!_]*.py")} == set(TINY)
-
-
-@pytest.mark.parametrize("name", TINY)
-def test_results_are_printed_and_written(name, measured):
+def test_results_are_printed_and_written(script_name, measured):
+    name = script_name
     found = measured(name)
     result, written, printed = found.result, found.written, found.printed
     assert written["benchmark"] == name
@@ -237,11 +144,11 @@ def test_curves_are_met_at_the_order_of_the_elements(measured):
         assert rows["nurbs, degree 3", 3][name] < 0.1 * rows["nurbs, degree 3", 1][name]
 
 
-def test_a_run_that_is_known_is_not_made_again(measured, monkeypatch):
+def test_a_run_that_is_known_is_not_made_again(measured, monkeypatch, tiny):
     first = measured("flag_oscillations")
     module = importlib.import_module("flag_oscillations")
     monkeypatch.setattr(module, "measure", lambda *_: pytest.fail("made again"))
-    again = module.main([*TINY["flag_oscillations"], "--json", str(first.folder / "flag_oscillations.json")])
+    again = module.main([*tiny["flag_oscillations"], "--json", str(first.folder / "flag_oscillations.json")])
     assert [dict(row) for row in again.rows] == [dict(row) for row in first.result.rows]
 
 
@@ -277,11 +184,11 @@ def test_the_flap_of_the_paper_is_drawn(measured):
         assert (found.folder / f"{name}.png").stat().st_size > 10_000
 
 
-def test_the_flap_s_runs_are_not_made_again(measured, monkeypatch):
+def test_the_flap_s_runs_are_not_made_again(measured, monkeypatch, tiny):
     first = measured("wall_ramm")
     module = importlib.import_module("wall_ramm")
     monkeypatch.setattr(module, "measure", lambda *_: pytest.fail("made again"))
-    again = module.main([*TINY["wall_ramm"], "--json", str(first.folder / "wall_ramm.json")])
+    again = module.main([*tiny["wall_ramm"], "--json", str(first.folder / "wall_ramm.json")])
     assert [dict(row) for row in again.rows] == [dict(row) for row in first.result.rows]
 
 
@@ -348,3 +255,44 @@ def test_the_noisiest_block_vertex_is_told(measured):
     assert found["noise %"] < 0.01
     assert found["u_y"] == pytest.approx(0.9, rel=0.01)
     assert found["Hz"] == pytest.approx(3.2, rel=1e-3)
+
+
+def test_a_step_that_has_become_slower_is_told(measured, tmp_path):
+    measured("guard")
+    guard = importlib.import_module("guard")
+    rows = {row["case"]: row for row in guard.compared({"a": 2.0, "b": 1.1, "c": 3.0}, {"a": 1.0, "b": 1.0})}
+    assert [rows[name][""] for name in "abc"] == ["SLOWER", "", ""]
+    assert (rows["a"]["change"], rows["c"]["change"]) == (2.0, None)
+    file = tmp_path / "baseline.json"
+    for _ in range(2):  # the second time there is something to compare with
+        asked = ["--steps", "1", "--cases", "CSM3", "--baseline", str(file), "--json", str(tmp_path / "guard.json")]
+        result = guard.main([*asked, "--update"])
+    assert 0.2 < result.rows[0]["change"] < 5.0
+
+
+def test_what_is_left_out_is_left_out(measured):
+    rows = {row["need"]: row for row in measured("skipping").result.rows}
+    floor = rows["time loop, mesh and coupling beside the solver"]
+    assert floor["counts without, with"] == "fluid.geometries 1 / 1; fluid.constant_assemblies 2 / 2"
+    assert rows["convection"]["counts without, with"].startswith("fluid.factorisations 2 / ")
+    assert rows["a nonlinear solid"]["counts without, with"].startswith("solid.factorisations 2 / ")
+    assert rows["convection"]["ratio"] > 1.5
+    assert all(row["ms with"] > 0.0 < row["ms without"] for row in rows.values())
+
+
+def test_functions_add_up_to_a_step(measured):
+    result = measured("step_profile").result
+    phases = result.settings["phases ms"]
+    assert {"fluid", "solid", "mesh", "step"} <= phases.keys()
+    assert sum(row["own ms"] for row in result.rows) == pytest.approx(phases["step"])
+    assert sum(value for name, value in phases.items() if name != "step") == pytest.approx(phases["step"])
+    assert any("multifrontal" in row["function"] for row in result.rows)
+
+
+def test_peers_solve_the_same_flag(measured):
+    rows = measured("solid_work_precision").result.rows
+    own = {row["mesh"]: row for row in rows if row["program"] == "hofsi"}
+    for row in rows:
+        if row["program"] == "scikit-fem":
+            assert row["u_y"] == pytest.approx(own[row["mesh"]]["u_y"], rel=2e-4)  # other quadrature
+    assert own["8 x 8"]["error"] < own["4 x 4"]["error"] < 0.05

@@ -179,6 +179,16 @@ def test_quantities_of_a_missing_fluid(read_changed: Read, solid_alone: str, qua
         read_changed(text=solid_alone + f"\n[quantities.q]\n{quantity}\n")
 
 
+def test_energies_of_a_solid_need_no_fluid(read_changed: Read, solid_alone: str, fluid_alone: str) -> None:
+    energies = "".join(
+        f'\n[quantities.{name}]\ntype = "{kind}"{of}\n'
+        for name, kind, of in (("k", "kinetic-energy", '\nof = "solid"'), ("s", "strain-energy", ""))
+    )
+    assert [quantity.name for quantity in read_changed(text=solid_alone + energies).quantities] == ["k", "s"]
+    with pytest.raises(CaseError, match=r"quantities.k: an energy of the solid, and there is no \[\[solid\]\]"):
+        read_changed(text=fluid_alone + energies)
+
+
 def test_quantities_of_a_missing_solid(read_changed: Read, fluid_alone: str) -> None:
     probe = '\n[quantities.q]\ntype = "probe"\nfield = "displacement"\ncomponent = "x"\nat = "b1"\n'
     with pytest.raises(CaseError, match=r"quantities.q: a probe of the solid, and there is no \[\[solid\]\]"):

@@ -49,6 +49,10 @@ GIVEN_UP = {
             "Leave coupling.condensed on, or set coupling.acceleration",
         ],
     ),
+    "steps whose accelerations are rounding": (
+        [(TIME, "dt = 1e-9\nsteps = 3"), (COUPLING, '[coupling]\ngeometry = "implicit"')],
+        ["coupling, t = ", "so small that rounding of positions makes", "raise time.dt"],
+    ),
     "too few iterations": (
         [(COUPLING, "[coupling]\ncondensed = false\nmax_iterations = 2")],
         ["coupling, t = ", "not converged after 2 iterations", "raise coupling.max_iterations"],
