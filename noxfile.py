@@ -18,8 +18,9 @@ HOBLOCK = "packages/hoblock"
 HOFSI = "packages/hofsi-coupler"
 SOURCES = os.pathsep.join(str(ROOT / package / "src") for package in (HOBLOCK, HOFSI))
 
-# Scripts in benchmarks/ that take hours.
-STUDIES = ("flag_oscillations.py", "wall_ramm.py")
+# What benchmarks compare with, besides Gmsh and scikit-fem.
+KRATOS = "FSI FluidDynamics StructuralMechanics MeshMoving Mapping ConstitutiveLaws LinearSolvers CoSimulation"
+PEERS = ("ngsolve", *(f"Kratos{name}Application" for name in KRATOS.split()))
 
 # Tests run on all processors; those of a file stay together, for they share what is slow to make.
 TOGETHER = ("-n", "auto", "--maxprocesses", "4", "--dist", "loadfile")
@@ -121,15 +122,29 @@ def verification_long(session: nox.Session) -> None:
     )
 
 
+def install_peers(session: nox.Session) -> None:
+    """Install the programs that benchmarks compare with, as far as there are wheels for this machine."""
+    for peer in PEERS:
+        session.install(peer, success_codes=[0, 1])
+
+
 @nox.session
 def benchmarks(session: nox.Session) -> None:
-    """Run every script in benchmarks/ but those of verification-long, or those given as arguments."""
+    """Remake docs/benchmarks.md and docs/stability.md; --quick for less, or run the scripts given as arguments."""
     scripts = [name for name in session.posargs if name.endswith(".py")]
     options = [word for word in session.posargs if word not in scripts]
     install_packages(session, "gmsh")
-    quick = (path for path in Path("benchmarks").glob("[!_]*.py") if path.name not in STUDIES)
-    for script in scripts or sorted(map(str, quick)):
-        session.run("python", script, *options)
+    install_peers(session)
+    for script in scripts or ["benchmarks/suite.py"]:
+        session.run("python", script, *options, env=ONE_THREAD)
+
+
+@nox.session
+def stress(session: nox.Session) -> None:
+    """Run what is built to break meshes, solvers and coupling, all of it or the groups given as arguments."""
+    install_packages(session)
+    command = ["benchmarks/stress_suite.py", *session.posargs]
+    session.run("python", *(command if session.posargs else ("benchmarks/suite.py", "stress_suite")), env=ONE_THREAD)
 
 
 @nox.session

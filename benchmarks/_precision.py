@@ -6,27 +6,53 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-__all__ = ["draw", "factors"]
+__all__ = ["draw", "factors", "factors_table"]
 
 Rows = Sequence[Mapping[str, Any]]
 GOALS = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
-MARKS = {"hofsi": "o", "NGSolve": "^"}
+MARKS = {"hofsi": ("o", "tab:blue"), "NGSolve": ("^", "tab:orange"), "scikit-fem": ("s", "tab:green"),
+         "Kratos": ("v", "tab:red")}  # fmt: skip
 
 
-def factors(rows: Rows, seconds: str, error: str) -> list[dict[str, Any]]:
-    """For each goal the cheapest run of each program that reaches it, and the time of NGSolve over that of hofsi."""
+def programs(rows: Rows) -> list[str]:
+    """The programs that were run, hofsi first."""
+    return [name for name in MARKS if any(run["program"] == name for run in rows)]
+
+
+def factors(rows: Rows, seconds: str, error: str, goals: Sequence[float] = GOALS) -> list[dict[str, Any]]:
+    """For each goal the cheapest run of each program that reaches it, and the peers' times over that of hofsi."""
     found = []
-    for goal in GOALS:
+    for goal in goals:
         row: dict[str, Any] = {"error": goal}
-        for program in MARKS:
+        for program in programs(rows):
             good = [run for run in rows if run["program"] == program and run[error] <= goal]
             best = min(good, key=lambda run: run[seconds]) if good else None
             row[program] = best[seconds] if best else None
             row[f"{program} run"] = f"order {best['order']}, {best['elements']} elements" if best else "none"
-        both = row["hofsi"] is not None and row["NGSolve"] is not None
-        row["factor"] = row["NGSolve"] / row["hofsi"] if both else None
+            if program != "hofsi":
+                both = row["hofsi"] is not None and row[program] is not None
+                row["factor" if program == "NGSolve" else f"factor, {program}"] = (
+                    row[program] / row["hofsi"] if both else None
+                )
         found.append(row)
     return found
+
+
+def factors_table(lines: Sequence[Mapping[str, Any]], below: str) -> str:
+    """The factors as a Markdown table."""
+    names = [name for name in MARKS if name in lines[0]]
+    head = [below, *(part for name in names for part in (name, "s"))]
+    peers = [name for name in names if name != "hofsi"]
+    rows = [[*head, *(f"{name} / hofsi" for name in peers)], ["---"] * (len(head) + len(peers))]
+    for line in lines:
+        row = [f"{line['error']:.0e}".replace("e-0", "e-")]
+        for name in names:
+            row += [line[f"{name} run"], "" if line[name] is None else f"{line[name]:.2g}"]
+        for name in peers:
+            factor = line["factor" if name == "NGSolve" else f"factor, {name}"]
+            row.append("" if factor is None else f"{factor:.1f}")
+        rows.append(row)
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
 
 
 def draw(rows: Rows, seconds: str, names: Mapping[str, str], file: Path) -> None:
@@ -34,13 +60,14 @@ def draw(rows: Rows, seconds: str, names: Mapping[str, str], file: Path) -> None
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(11.0, 8.0), layout="constrained")
+    wide = 2 if len(names) > 1 else 1
+    figure = Figure(figsize=(5.5 * wide, 4.0 * -(-len(names) // wide)), layout="constrained")
     FigureCanvasAgg(figure)
-    for axes, (column, title) in zip(figure.subplots(2, 2).flat, names.items(), strict=True):
-        for colour, (program, mark) in zip(("tab:blue", "tab:orange"), MARKS.items(), strict=True):
+    panels = figure.subplots(-(-len(names) // wide), wide, squeeze=False).flat
+    for axes, (column, title) in zip(panels, names.items(), strict=False):
+        for program in programs(rows):
+            mark, colour = MARKS[program]
             mine = sorted((run for run in rows if run["program"] == program), key=lambda run: run[seconds])
-            if not mine:
-                continue
             axes.plot([r[seconds] for r in mine], [r[column] for r in mine], mark, color=colour, ms=4, alpha=0.35)
             best: list[Mapping[str, Any]] = []
             for run in mine:

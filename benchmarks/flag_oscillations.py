@@ -7,10 +7,10 @@ Each run is a scene of examples/ from rest to its end, with the changes that are
 
     python benchmarks/flag_oscillations.py fsi3_ring --like fsi2 --set constants.U=1 --set 'solid[0].density=10000' ...
 
-Without a scene the whole study is made. Runs are appended to the JSON file; one that is there already is not made
-again, so that a study of hours can be made in parts. A picture shows the errors of all runs in the file against their
-seconds. Where the environment variable HOFSI_REFERENCE names a folder with FeatFlow's series ref_fsi2.point and
-ref_fsi3.point, each run is drawn over them.
+Without a scene the whole study is made, or another set of runs. Runs are appended to the JSON file; one that is there
+already is not made again, so that a study of hours can be made in parts. A picture shows the errors of all runs in the
+file against their seconds. Where the environment variable HOFSI_REFERENCE names a folder with FeatFlow's series
+ref_fsi2.point and ref_fsi3.point, each run is drawn over them.
 """
 
 from __future__ import annotations
@@ -75,6 +75,17 @@ STUDY = [
     ("fsi3_ring", "fsi3", ["mesh.order=5"]),
     ("fsi3_ring", "fsi2", [*FSI2, "mesh.order=5"]),
 ]
+# Orders and steps, each coarser and as shipped, for errors over seconds; and two short runs that show how it works.
+PRECISION = [
+    (scene, scene, [f"mesh.order={order}", f"time.dt={dt}"])
+    for scene, dts in (("fsi2", (0.01, 0.005)), ("fsi3", (0.004, 0.002)))
+    for order in (3, 4)
+    for dt in dts
+]
+QUICK = [
+    ("fsi3", "fsi3", [f"mesh.order={order}", f"time.dt={dt}", "time.end=5"]) for order, dt in ((2, 0.004), (3, 0.008))
+]
+SETS = {"study": STUDY, "precision": PRECISION, "quick": QUICK}
 COLUMNS = {"t": 0, "u_x": 10, "u_y": 11, "drag": (4, 6), "lift": (5, 7)}  # of the series
 
 
@@ -208,6 +219,7 @@ def main(argv: Sequence[str] | None = None) -> Result:
     options.add_argument(
         "scene", nargs="?", help="name of a scene in examples/: fsi2, fsi3, ...; default: the whole study"
     )
+    options.add_argument("--runs", choices=SETS, default="study", help="without a scene (default: %(default)s)")
     options.add_argument("--like", choices=REFERENCE, help="whose figures to compare with; default that of its name")
     options.add_argument("--orders", type=int, nargs="+", default=[None], help="mesh.order of each run")
     options.add_argument("--set", action="append", default=[], dest="changes", metavar="KEY=VALUE")
@@ -216,7 +228,7 @@ def main(argv: Sequence[str] | None = None) -> Result:
     path = asked.json or ROOT / "results" / "flag_oscillations.json"
     rows: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["rows"] if path.is_file() else []
     picture = asked.picture or path.with_suffix(".png")
-    runs: Sequence[tuple[str, str, list[str]]] = STUDY
+    runs: Sequence[tuple[str, str, list[str]]] = SETS[asked.runs]
     if asked.scene is not None:
         like = asked.like or asked.scene.split("_")[0]
         orders = [[] if order is None else [f"mesh.order={order}"] for order in asked.orders]
