@@ -17,6 +17,7 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 from _pages import filled
@@ -39,6 +40,8 @@ class Study:
         Of the whole study, and of a smaller one.
     picture : str
         Of the image in docs/images/; "" if there is none.
+    needs : str
+        A package without which it cannot be made; "" if there is none.
     """
 
     name: str
@@ -46,6 +49,12 @@ class Study:
     arguments: tuple[str, ...] = ()
     quick: tuple[str, ...] = ("--quick",)
     picture: str = ""
+    needs: str = ""
+
+    @property
+    def missing(self) -> bool:
+        """Whether it cannot be made here."""
+        return bool(self.needs) and find_spec(self.needs) is None
 
     def command(self, folder: Path, images: Path, *, quick: bool) -> list[str]:
         """What to run."""
@@ -61,7 +70,7 @@ STUDIES = (
     Study("bench", ""),
     Study("stress_suite", "stress_suite.py"),
     Study("coupling_regime", "coupling_regime.py", picture="coupling_regime.png"),
-    Study("flap_kratos", "peers/flap_kratos.py", picture="flap_kratos.png"),
+    Study("flap_kratos", "peers/flap_kratos.py", picture="flap_kratos.png", needs="KratosMultiphysics"),
     Study(
         "mesh_motion",
         "mesh_motion.py",
@@ -83,6 +92,7 @@ STUDIES = (
         "peers/gmsh_transfinite.py",
         ("--nodes", "300000"),
         ("--nodes", "30000", "--orders", "2", "4"),
+        needs="gmsh",
     ),
     Study("skipping", "skipping.py"),
     Study("step_profile", "step_profile.py"),
@@ -110,7 +120,10 @@ def start(study: Study, folder: Path, images: Path, *, quick: bool) -> Running:
 
 def carry_out(studies: Sequence[Study], folder: Path, images: Path, *, quick: bool, jobs: int) -> list[str]:
     """Run studies, so many at a time, and return the names of those that did not succeed."""
-    waiting, running, failed = list(studies), list[Running](), list[str]()
+    waiting, running, failed = [study for study in studies if not study.missing], list[Running](), list[str]()
+    for study in studies:
+        if study.missing:
+            print(f"{study.name}: not made, for {study.needs} is not installed", flush=True)
     while waiting or running:
         while waiting and len(running) < jobs:
             running.append(start(waiting.pop(0), folder, images, quick=quick))

@@ -82,6 +82,12 @@ def test_studies_run_side_by_side_and_one_may_fail(scripts, tmp_path, monkeypatc
     assert (tmp_path / "bad.log").read_text(encoding="utf-8") == "bad True\n"
 
 
+def test_what_needs_a_peer_that_is_not_here_is_left_out(scripts, tmp_path, capsys):
+    study = scripts.suite.Study("peer", "peers/gmsh_transfinite.py", needs="a_peer_that_nobody_has")
+    assert scripts.suite.carry_out([study], tmp_path, tmp_path, quick=True, jobs=1) == []
+    assert capsys.readouterr().out == "peer: not made, for a_peer_that_nobody_has is not installed\n"
+
+
 def test_commands_name_their_files(scripts, tmp_path):
     by_name = {study.name: study for study in scripts.suite.STUDIES}
     command = by_name["coupling_regime"].command(tmp_path, tmp_path / "images", quick=True)
