@@ -23,6 +23,7 @@ from pathlib import Path
 from _pages import filled
 
 ROOT = Path(__file__).resolve().parent.parent
+_PEER = "--ngsolve"  # asked for where it is installed
 PAGES = ("benchmarks.md", "stability.md")
 
 
@@ -60,7 +61,7 @@ class Study:
         """What to run."""
         program = [str(ROOT / "benchmarks" / self.script)] if self.script else ["-m", "hofsi", "bench"]
         picture = ["--picture", str(images / self.picture)] if self.picture else []
-        wanted = self.quick if quick else self.arguments
+        wanted = [word for word in (self.quick if quick else self.arguments) if word != _PEER or find_spec("ngsolve")]
         return [sys.executable, *program, *wanted, "--json", str(folder / f"{self.name}.json"), *picture]
 
 
