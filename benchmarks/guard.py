@@ -25,7 +25,7 @@ from hofsi import build, load_case, simulate
 
 BASELINE = ROOT / "benchmarks" / "measured" / "guard.json"
 TABLES_ONLY = ("output.fields=false", "output.plots=false")
-SLOWER = 1.15  # of the baseline; the same code differs by 3 to 6 % from run to run
+SLOWER = 1.15  # of the baseline; the same code differs by up to 10 % from run to run beside other jobs
 _WARM = 4
 
 
