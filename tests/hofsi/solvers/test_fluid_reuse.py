@@ -181,6 +181,30 @@ def test_elements_that_stand_still_keep_their_matrices(flows):
     assert solver.counts.elements_kept == 3 * (~moved).sum()
 
 
+def test_matrices_of_an_earlier_mesh_are_still_those_of_that_mesh(flows):
+    """Whoever holds them may ask when the solver has gone on, and disturbs nothing."""
+    mesh = flows.grid(3, columns=6, rows=4)
+    conditions = [case.NoSlip(("left",))]
+    solver, some = flows.solver(mesh, conditions), slice(0, len(mesh.cells))
+
+    def at(time):
+        points = mesh.points.copy()
+        points[:, 0] += time * np.maximum(0.0, points[:, 0] - 0.55) ** 2
+        return points
+
+    places = [at(time) for time in (0.0, 0.1, 0.2)]
+    afresh = [flows.solver(mesh, conditions).constant_terms(p, 2.0).ask().matrices(some) for p in places]
+    first = solver.constant_terms(places[0], 2.0)
+    np.testing.assert_array_equal(first.ask().ask().matrices(some), afresh[0])
+    second = solver.constant_terms(places[1], 2.0).ask()
+    np.testing.assert_array_equal(second.matrices(some), afresh[1])
+    np.testing.assert_array_equal(first.matrices(some), afresh[0])
+    np.testing.assert_array_equal(second.matrices(some), afresh[1])
+    third = solver.constant_terms(places[2], 2.0).ask()
+    np.testing.assert_array_equal(second.matrices(some), afresh[1])
+    np.testing.assert_array_equal(third.matrices(some), afresh[2])
+
+
 def test_another_step_size_makes_all_matrices_anew(flows):
     mesh = flows.grid(2)
     solver = flows.solver(mesh, [case.NoSlip(("left",))])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from hofsi.bench.benchmark import Measured
 from hofsi.bench.checks import Limit, judged
 from hofsi.bench.scene_benchmark import SCENES
 from hofsi.io.scene import load_case
-from hofsi.run import run
+from hofsi.run import Result, run
 
 __all__ = ["Coupling"]
 
@@ -72,23 +71,23 @@ class Coupling:
         )
 
 
-def _run(changes: list[str], folder: Path) -> Any:
+def _run(changes: list[str], folder: Path) -> Result:
     case = load_case(SCENES / "pressure_pulse.toml", [*changes, "output.fields=false", "output.plots=false"])
     return run(case, folder)
 
 
-def _iterations(result: Any) -> float | None:
+def _iterations(result: Result) -> float | None:
     counts = result.summary["counts"]
-    return counts["coupling_iterations"] / counts["steps"] if counts["steps"] else None
+    return float(counts["coupling_iterations"] / counts["steps"]) if counts["steps"] else None
 
 
-def _difference(one: Any, other: Any) -> float | None:
+def _difference(one: Result, other: Result) -> float | None:
     """Largest difference of the wall's displacement relative to its largest value."""
     a, b = one.series["wall_1"], other.series["wall_1"]
     return float(np.abs(a - b).max() / np.abs(b).max()) if a.shape == b.shape and a.size else None
 
 
-def _speed(result: Any) -> float | None:
+def _speed(result: Result) -> float | None:
     """From the times at which the walls at x = 1 and 3 cm are widest."""
     times = [result.times[int(np.argmax(result.series[name]))] for name in ("wall_1", "wall_3") if result.times.size]
-    return 2.0 / (times[1] - times[0]) if len(times) == 2 and times[1] > times[0] else None
+    return float(2.0 / (times[1] - times[0])) if len(times) == 2 and times[1] > times[0] else None

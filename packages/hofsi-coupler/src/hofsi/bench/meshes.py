@@ -14,6 +14,7 @@ from hoblock.building import build_structure
 from hoblock.generate import generate, raise_if_invalid, regenerate
 from hoblock.mesh import QuadMesh
 from hoblock.quality import det_jacobian
+from hoblock.reference import gauss_legendre
 from hofsi.bench.benchmark import Measured
 from hofsi.bench.checks import Check, Limit, judged
 from hofsi.bench.scene_benchmark import SCENES
@@ -72,8 +73,6 @@ class MeshGeneration:
 
 def area(mesh: QuadMesh) -> float:
     """The integral of det J, exact for the polynomials that it consists of."""
-    from hoblock.reference import gauss_legendre
-
     points, weights = gauss_legendre(mesh.order + 1)
     xi, eta = (part.ravel() for part in np.meshgrid(points, points))
     return float((det_jacobian(mesh, np.stack([xi, eta], axis=1)) @ np.outer(weights, weights).ravel()).sum())

@@ -152,10 +152,13 @@ class ConstantTerms:
         self._kept: KeptBlocks | None = None
 
     def take_over(self, before: ConstantTerms, standing: Mask) -> None:
-        """Keep what other terms, which differ by the mesh alone, have of elements (e,) whose nodes did not move."""
+        """Keep what other terms, which differ by the mesh alone, have of elements (e,) whose nodes did not move.
+
+        The others have it no more, and make their blocks anew if somebody still asks them.
+        """
         if not standing.any():
             return
-        self._standing, self._kept = standing, before._kept or KeptBlocks(self.space)
+        self._standing, self._kept, before._kept = standing, before._kept or KeptBlocks(self.space), None
         self._kept.known &= standing
 
     def ask(self) -> ConstantTerms:
