@@ -50,7 +50,7 @@ GIVEN_UP = {
         ],
     ),
     "steps whose accelerations are rounding": (
-        [(TIME, "dt = 1e-9\nsteps = 3"), (COUPLING, '[coupling]\ngeometry = "implicit"')],
+        [(TIME, "dt = 1e-9\nsteps = 3"), ("*sin(t)", ""), (COUPLING, '[coupling]\ngeometry = "implicit"')],
         ["coupling, t = ", "so small that rounding of positions makes", "raise time.dt"],
     ),
     "too few iterations": (
@@ -115,3 +115,11 @@ def test_a_light_solid_is_no_trouble_for_quasi_newton_methods(run: Run, accelera
     counts = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["counts"]
     assert 20 <= counts["steps"] <= 24  # the sudden start may want smaller steps
     assert counts["coupling_iterations"] <= 15 * counts["steps"]
+
+
+@pytest.mark.parametrize("geometry", ["implicit", "extrapolated"])
+@pytest.mark.parametrize("inflow", ["0", "1e-13*y*(H - y)", "4*U*y*(H - y)/H**2*(t - 0.35) if t > 0.35 else 0"])
+def test_a_fluid_that_hardly_moves_may_have_a_load_of_rounding(run: Run, inflow: str, geometry: str) -> None:
+    changes = [(TIME, "dt = 0.1\nsteps = 5"), (COUPLING, f'[coupling]\ngeometry = "{geometry}"')]
+    code, message, _ = run([*changes, ("4*U*y*(H - y)/H**2*sin(t)", inflow)])
+    assert (code, message) == (0, "")
