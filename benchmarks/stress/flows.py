@@ -28,6 +28,7 @@ lid = [["d", "c"]]
 [fluid]
 density = 1.0
 viscosity = {viscosity!r}
+{keys}
 [[fluid.boundary]]
 on = "walls"
 type = "no-slip"
@@ -98,9 +99,9 @@ def _warned(summary: object) -> float:
     return float(sum("too coarse for this Reynolds number" in note for note in summary["notes"]))
 
 
-def _cavity(order: int, elements: int, viscosity: float, time: str, quick: bool) -> Numbers:
+def _cavity(order: int, elements: int, viscosity: float, time: str, keys: str, quick: bool) -> Numbers:
     """A driven cavity; at most the lid's speed everywhere would be an energy of 1/2."""
-    scene = _CAVITY.format(order=order, elements=elements, viscosity=viscosity, time=time)
+    scene = _CAVITY.format(order=order, elements=elements, viscosity=viscosity, time=time, keys=keys)
     summary, series = reported(scene)
     return {
         "energy": float(series["energy"].max()),
@@ -135,6 +136,7 @@ def _flag(changes: list[str], quick: bool) -> Numbers:
     }
 
 
+_SKEW = 'convection_form = "skew-symmetric"'
 _GIVEN_UP = Stops("ConvergenceError", r"(fluid|step).*(not finite|Newton's method|Refine the mesh|lower the Reynolds)")
 _COARSE = (4, 4)
 
@@ -147,27 +149,39 @@ def _bounded(**bounds: float) -> tuple[Expectation, ...]:
 CASES = (
     *(
         StressCase(
-            f"cavity in time, order {order}, {n} × {n}",
+            f"cavity in time, order {order}, {n} × {n}{', skew-symmetric' if keys else ''}",
             "A lid set in motion at once over a cavity at Re = 1e4, on elements that cannot resolve it.",
             _bounded(energy=0.5),
-            partial(_cavity, order, n, 1e-4, "dt = 0.02\nsteps = 200"),
+            partial(_cavity, order, n, 1e-4, "dt = 0.02\nsteps = 200", keys),
             quick=order == 2,
         )
+        for keys in ("", _SKEW)
         for order, n in ((2, 4), (4, 4), (6, 3))
     ),
     StressCase(
         "cavity, steady",
         "The steady flow at Re = 1e4 is sought on 4 × 4 elements of order 4.",
         _bounded(energy=0.5),
-        partial(_cavity, 4, 4, 1e-4, "steady = true"),
+        partial(_cavity, 4, 4, 1e-4, "steady = true", ""),
         quick=True,
     ),
     StressCase(
         "cavity, steady, resolved",
         "The same at Re = 100, which is resolved: no warning.",
         (Within({"energy": 0.5, "warnings": 0.0}),),
-        partial(_cavity, 6, 6, 1e-2, "steady = true"),
+        partial(_cavity, 6, 6, 1e-2, "steady = true", ""),
         quick=True,
+    ),
+    *(
+        StressCase(
+            f"shear layers, order {order}, {n} × {n}, skew-symmetric, {convection}",
+            "The same in the form of convection that makes no energy, Newton's method and linear steps.",
+            (Within({"energy": 1.0, "energy at the end": (0.3, 1.0)}),),
+            partial(_box, _LAYER, order, n, f'{_SKEW}\nconvection = "{convection}"'),
+            quick=order == 2 and convection == "linearised",
+        )
+        for order, n in ((2, 6), (4, 4), (8, 2))
+        for convection in ("linearised", "extrapolated", "newton")
     ),
     *(
         StressCase(
@@ -185,6 +199,12 @@ CASES = (
         (Within({"energy": 1.0, "energy at the end": (0.9684, 0.9694), "warnings": 0.0}),),
         partial(_box, _VORTICES, 4, 4, ""),
     ),
+    StressCase(
+        "four vortices, order 4, 4 × 4, skew-symmetric",
+        "The same flow in the other form.",
+        (Within({"energy": 1.0, "energy at the end": (0.9684, 0.9694), "warnings": 0.0}),),
+        partial(_box, _VORTICES, 4, 4, _SKEW),
+    ),
     *(
         StressCase(
             f"cylinder and flag{', ' + ' '.join(changes) if changes else ''}",
@@ -192,6 +212,11 @@ CASES = (
             _bounded(drag=5e3, lift=5e3),
             partial(_flag, changes),
         )
-        for changes in ([], ['fluid.convection="newton"'], ["time.dt=0.05", "time.steps=100"])
+        for changes in (
+            [],
+            ['fluid.convection="newton"'],
+            ["time.dt=0.05", "time.steps=100"],
+            ['fluid.convection_form="skew-symmetric"'],
+        )
     ),
 )

@@ -33,6 +33,8 @@ def test_defaults() -> None:
 def test_words() -> None:
     assert fluid(model="stokes").model == "stokes"
     assert fluid(convection="picard").convection == "picard"
+    assert not fluid().skew_symmetric
+    assert fluid(convection_form="skew-symmetric").skew_symmetric
     assert solid(model="linear").model == "linear"
     assert solid(model="neo-hooke").model == "neo-hooke"
     assert solid(plane="stress").plane == "stress"
@@ -78,6 +80,7 @@ def test_initial_fields() -> None:
         ({"viscosity": True}, r"fluid.viscosity: got the boolean true"),
         ({"model": "euler"}, r"fluid.model: got 'euler'. .*'navier-stokes', 'stokes'"),
         ({"convection": "newtn"}, r"fluid.convection: got 'newtn'. Did you mean 'newton'"),
+        ({"convection_form": "skew"}, r"fluid.convection_form: got 'skew'. .*'convective', 'skew-symmetric'"),
         ({"blocks": ["fluids"]}, r"fluid.blocks: got the unknown name 'fluids'. Did you mean 'fluid'"),
         ({"blocks": []}, r"fluid.blocks: got an empty list"),
         ({"initial_velocity": ["t", 0]}, r"fluid.initial_velocity\[0\]: .*'t'"),

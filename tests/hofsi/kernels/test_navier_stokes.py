@@ -148,6 +148,20 @@ def test_convection_and_newtons_term_are_the_derivative_of_convection(peers):
     peers.same(2.0 * (convection(peers.u) + newton) @ d.ravel(), difference)
 
 
+def test_what_advects_the_gradient_of_the_test_functions(peers):
+    """-(a·∇v)·u as the work of a stress, and its derivative in a by transposed transport."""
+    cells, geometry, N = peers.mesh.cells, peers.geometry, peers.table.N
+    u, a = N @ peers.u[cells], N @ peers.a[cells]
+    local = kernel.stress_work(peers.table.dN, geometry.J_inv, geometry.weights, 2.0 * kernel.advected_stress(u, a))
+    ours = np.zeros(peers.mesh.points.shape)
+    np.add.at(ours, cells, local)
+    theirs = peers.theirs(lambda a, v, w: -2.0 * dot(mul(grad(v), a), w["u"]), u=peers.u)
+    peers.same(ours.ravel(), theirs @ peers.a.ravel())
+    c = kernel.advected_transport(geometry.weights, geometry.J_inv, 2.0, u)
+    blocks = tensor_products.transport(peers.products, *(part.reshape(-1, part.shape[-1]) for part in c))
+    peers.same(peers.ours(np.split(-blocks.transpose(0, 2, 1), 4)), theirs)
+
+
 def test_divergence(peers):
     n = len(peers.mesh.points)
     pressure = element_table(1, COUNT)

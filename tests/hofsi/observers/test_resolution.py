@@ -36,10 +36,19 @@ def test_a_reynolds_number_far_too_high_for_the_mesh_is_told_once(read_changed: 
     assert "too coarse for this Reynolds number. Worst: element" in said[0]
     assert "in blocks.fluid at (" in said[0]
     assert "Take more elements there, a higher order or a lower Reynolds number" in said[0]
+    assert 'convection_form = "skew-symmetric"' in said[0]
     assert found["roughness"] > 0.08
     assert found["peclet"] > 1e3
     assert found["peclet_max"] >= found["peclet"]
     assert 0.0 < found["x"] < 3.0
+
+
+def test_the_form_that_keeps_energy_is_not_advised_twice(read_changed: Read, fluid_alone: str) -> None:
+    form = ("viscosity = 1e-6", 'viscosity = 1e-6\nconvection_form = "skew-symmetric"')
+    case = read_changed(COARSE, form, ("end = 2.0", "steps = 8"), text=fluid_alone)
+    said, _ = watched(case, every=2)
+    assert len(said) == 1
+    assert "convection_form" not in said[0]
 
 
 def test_a_viscous_flow_is_resolved(read_changed: Read, fluid_alone: str) -> None:

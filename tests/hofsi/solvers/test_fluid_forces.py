@@ -10,7 +10,7 @@ from hoblock import Arc, BlockStructure, generate
 from hofsi import case
 from hofsi.errors import CaseError
 from hofsi.fem.geometry import physical_gradients, side_geometry
-from hofsi.solvers.fluid_forces import BoundaryForce, boundary_sides
+from hofsi.solvers.fluid_forces import BoundaryForce
 
 NOBODY = np.zeros((0, 2))
 VISCOSITY, LENGTH = 0.1, 3.0
@@ -232,13 +232,6 @@ def test_sides_named_twice_count_once(flows):
     solver, state, _ = poiseuille(flows, 2, "do-nothing")
     once, twice = (BoundaryForce(solver, names).evaluate(state) for names in (["bottom"], ["bottom", "bottom"]))
     np.testing.assert_array_equal(twice, once)
-
-
-def test_boundary_sides_are_those_of_one_element(flows):
-    mesh = flows.grid(2, 3, 2)
-    sides = boundary_sides(mesh)
-    named = np.concatenate([mesh.edge_groups[name] for name in flows.around])
-    assert sorted(map(tuple, sides.tolist())) == sorted(map(tuple, named.tolist()))
 
 
 def test_unknown_names_are_reported(flows):

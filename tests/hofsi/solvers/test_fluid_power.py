@@ -49,6 +49,14 @@ def test_steady_flow_dissipates_what_it_is_given_less_what_it_takes_along(flows,
     assert power.external(state) - carried == pytest.approx(dissipation(solver, state), rel=2e-4)
 
 
+@pytest.mark.parametrize("outlet", CONDITIONS)
+def test_skew_symmetric_convection_leaves_nothing(flows, outlet):
+    solver = bent_channel(flows, outlet, convection_form="skew-symmetric")
+    state = flows.steady(solver)
+    power = FluidPower(solver)
+    assert power.external(state) - power.convected(state) == pytest.approx(dissipation(solver, state), rel=1e-9)
+
+
 def test_the_interface_counts_apart(flows):
     mesh = flows.grid(3)
     top = mesh.edge_nodes("top")

@@ -22,7 +22,7 @@ _TOLD_ELSEWHERE = ("place", "file", "title", "steps", "tables", "variables")  # 
 _NOTHING = "nothing"
 
 _SETTINGS = r"time\.(dt|end|halvings|tolerance|first|spectral_radius)|(coupling|nonlinear|linear|output)\.\w+"
-_NUMERICS = r"fluid\.(convection|grad_div)|mover\..*"
+_NUMERICS = r"fluid\.(convection|convection_form|grad_div)|mover\..*"
 _PHYSICS = r"fluid\.(density|viscosity|body_force.*)|solid\[\d+\]\.(density|youngs_modulus|poissons_ratio|body_force.*)"
 _GIVEN = r"(fluid|solid\[\d+\])\.boundary\[\d+\]\.(x|y|value|traction_x|traction_y|backflow)|motion\[\d+\]\.(x|y)"
 _PAST = r"(fluid|solid\[\d+\])\.initial_\w+.*"

@@ -26,6 +26,7 @@ from hofsi.case.conditions import (
 )
 from hofsi.case.materials import (
     Convection,
+    ConvectionForm,
     Fluid,
     Motion,
     Solid,
@@ -76,6 +77,7 @@ __all__ = [
     "BarrierSettings",
     "Case",
     "Convection",
+    "ConvectionForm",
     "CouplingSettings",
     "Displacement",
     "DoNothing",

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Convection",
+    "ConvectionForm",
     "Fluid",
     "Motion",
     "Solid",
@@ -23,6 +24,7 @@ __all__ = [
 
 VectorExpression: TypeAlias = "tuple[Expression, Expression]"
 Convection: TypeAlias = Literal["newton", "picard", "linearised", "extrapolated"]
+ConvectionForm: TypeAlias = Literal["convective", "skew-symmetric"]
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class Fluid:
         None is zero.
     grad_div : float
         γ of the term ∫ γ (∇·u)(∇·v), of the unit of the viscosity; 0 for none.
+    convection_form : {"convective", "skew-symmetric"}
+        Whether ∫ ½ ρ (∇·u) u·v is added, which vanishes for the exact solution and lets no energy come from convection.
     place : str
     """
 
@@ -61,7 +65,13 @@ class Fluid:
     body_force: VectorExpression | None = None
     initial_velocity: VectorExpression | None = None
     grad_div: float = 0.0
+    convection_form: ConvectionForm = "convective"
     place: str = "fluid"
+
+    @property
+    def skew_symmetric(self) -> bool:
+        """Whether convection keeps energy though the discrete velocity has divergence."""
+        return self.convection_form == "skew-symmetric"
 
     @property
     def periodic(self) -> bool:

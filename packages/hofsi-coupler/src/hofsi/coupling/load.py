@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.coupling.interface import Interface
+from hofsi.fem.sides import boundary_sides
 from hofsi.solvers.fluid import FluidSolver, FluidState
-from hofsi.solvers.fluid_forces import NeighbourSides, boundary_sides, interface_sides
+from hofsi.solvers.fluid_forces import NeighbourSides, interface_sides
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

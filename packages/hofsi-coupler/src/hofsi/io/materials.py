@@ -46,6 +46,7 @@ def read_fluid(table: Table, mesh: MeshScene, constants: Mapping[str, float]) ->
         body_force=_body_force(table, constants, density),
         initial_velocity=_initial(table, "initial_velocity", constants),
         grad_div=table.number("grad_div", 0.0, minimum=0.0),
+        convection_form=choice(table, "convection_form", ("convective", "skew-symmetric"), "convective"),
         place=table.place,
     )
     table.finish()

@@ -8,6 +8,9 @@ all elements.
 The weak form of the paper's Eqs. (1)–(4) on the current configuration, with the advective velocity a = u - w:
 
     ∫ ρ (∂u/∂t + a·∇u)·v + 2 μ ε(u):ε(v) - p ∇·v - q ∇·u  =  ∫ f·v + ∫ t·v ds
+
+The skew-symmetric form of convection takes half of (a·∇u)·v and half of -(a·∇v)·u, integrated by parts (Temam, Bull.
+Soc. Math. France 96 (1968) 115–152, doi:10.24033/bsmf.1662): its energy vanishes whatever the quadrature.
 """
 
 from __future__ import annotations
@@ -18,6 +21,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 __all__ = [
+    "advected_stress",
+    "advected_transport",
     "advection",
     "convection",
     "divergence",
@@ -73,6 +78,19 @@ def advection(gradient: Array, advective: Array) -> Array:
     """(a·∇) u, shape (e, q, 2), of gradients ∂_b u_a (a, b, e, q) and advective velocities a (e, q, 2)."""
     x, y = advective[..., 0], advective[..., 1]
     return np.stack([row[0] * x + row[1] * y for row in gradient], axis=-1)
+
+
+def advected_transport(weights: Array, J_inv: Array, density: float, u: Array) -> tuple[Array, Array]:
+    """Coefficients c_ξ and c_η of ∫ ρ u_a N_i ∂_b N_j, of velocities u (e, q, 2), each (a, b, e, q)."""
+    w = (density * weights) * np.moveaxis(u, -1, 0)
+    along_xi, along_eta = (np.moveaxis(J_inv[:, :, c], -1, 0) for c in range(2))
+    return w[:, None] * along_xi, w[:, None] * along_eta
+
+
+def advected_stress(u: Array, advective: Array) -> Array:
+    """-u_a a_b, shape (a, b, e, q), of velocities u and advective velocities a (e, q, 2): (a·∇v)·u is its work."""
+    components, along = np.moveaxis(u, -1, 0), np.moveaxis(advective, -1, 0)
+    return np.asarray(-components[:, None] * along)
 
 
 def divergence(P: Array, dNx: Array, dNy: Array, weights: Array) -> tuple[Array, Array]:

@@ -99,11 +99,13 @@ class FlowResolutionWatch:
         mesh, worst = self._fluid.mesh, self._worst
         groups = [name for name, members in mesh.cell_groups.items() if element in members]
         inside = f" in blocks.{groups[0]}" if groups else ""
+        plain = not self._fluid.solver.fluid.skew_symmetric
+        way_out = ', or convection_form = "skew-symmetric" if the flow gains energy or diverges' if plain else ""
         number = "1 element is" if count == 1 else f"{count} elements are"
         return (
             f"fluid, t = {worst['t_roughness']:g}: {number} too coarse for this Reynolds number. Worst: element "
             f"{element}{inside} at ({worst['x']:.4g}, {worst['y']:.4g}) with the Péclet number {worst['peclet']:.3g} "
             f"(ρ |u - w| h/(2 μ p)), where {100.0 * worst['roughness']:.2g} % of the largest velocity is in the "
             "highest polynomials; a resolved flow has less than 0.5 %. Take more elements there, a higher order or a "
-            "lower Reynolds number; do not trust forces from this mesh"
+            f"lower Reynolds number{way_out}; do not trust forces from this mesh"
         )

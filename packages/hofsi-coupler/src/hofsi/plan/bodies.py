@@ -38,13 +38,14 @@ def fluid_items(case: Case, meshes: Meshes) -> Iterator[Item]:
         f"{_MODELS[case.fluid.model]}, ρ = {case.fluid.density:g}, μ = {case.fluid.viscosity:g}; "
         f"{2 * len(mesh.points)} unknowns of velocity and {pressures(mesh)} of pressure, given ones included",
     )
+    form = "; in the skew-symmetric form" if case.fluid.skew_symmetric else ""
     if iterates(case, case.fluid):
         method = "Picard's" if case.fluid.convection == "picard" else "Newton's"
-        yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}")
+        yield Item("convection", f"{method} iteration to a relative residual of {case.nonlinear.tolerance:g}{form}")
     elif case.fluid.model == "navier-stokes":
         convects = convection_of_steps(case, case.fluid) == "extrapolated"
         how = "convection with" if convects else "Newton's linearisation about"
-        yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps")
+        yield Item("convection", f"{how} the velocity extrapolated to second order: linear steps{form}")
     solver = {
         "direct": f"sparse LU of {condensed_fluid(mesh)} unknowns after static condensation",
         "amg": f"FGMRES with multigrid on nested meshes to a relative residual of {case.linear.tolerance:g}",

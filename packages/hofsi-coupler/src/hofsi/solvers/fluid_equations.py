@@ -25,6 +25,7 @@ from hofsi.kernels import tensor_products
 from hofsi.linear.checked import CheckedSolver
 from hofsi.linear.solver import Solver
 from hofsi.solvers.backflow import Backflow
+from hofsi.solvers.convective_flux import ConvectiveFlux
 from hofsi.solvers.enclosed import EnclosedRegions
 from hofsi.solvers.fluid_boundary import FluidBoundary
 from hofsi.solvers.fluid_factors import FactorsMemory, FluidFactors, Problem
@@ -75,6 +76,7 @@ class FluidEquations:
         self.products = _velocity_products(self.space)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.backflow = Backflow(mesh, self.space, fluid.boundaries, fluid.density)
+        self.flux = ConvectiveFlux(mesh, self.space)
         self.counts = Counts()
         self.factors = FluidFactors(self.counts, linear.lag)
         self._system: FluidSystem | None = None
@@ -149,7 +151,11 @@ class FluidEquations:
             rows += rate * fluid.density * (geometry.weights * N.sum(axis=1)) @ N
             fixed = assemble_vector(space.velocity_unknowns, rows, len(points))
             sources = assemble_vector(space.pressure_unknowns, (geometry.weights * gradients) @ P, space.pressure_count)
-            convecting = assemble_vector(space.velocity_unknowns, (geometry.weights * gradients) @ N, len(points))
+            convected = (geometry.weights * gradients) @ N
+            if fluid.skew_symmetric:
+                tested = (geometry.weights * N.sum(axis=1))[:, :, None] * along
+                convected = 0.5 * (convected + np.einsum("eqc,qnc->en", tested, dN))
+            convecting = assemble_vector(space.velocity_unknowns, convected, len(points))
             size = float(np.hypot(np.sqrt(2.0) * np.linalg.norm(fixed), np.linalg.norm(sources)))
             self._row_sums = (terms, size, float(np.linalg.norm(convecting)))
         return self._row_sums[1:]

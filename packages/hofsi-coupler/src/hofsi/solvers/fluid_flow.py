@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hofsi.fem.geometry import SideGeometry, side_geometry
+from hofsi.fem.sides import boundary_sides
 from hofsi.solvers.fluid import FluidSolver, FluidState
-from hofsi.solvers.fluid_forces import boundary_sides, named_sides
+from hofsi.solvers.fluid_forces import named_sides
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

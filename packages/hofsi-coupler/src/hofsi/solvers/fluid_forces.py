@@ -14,20 +14,13 @@ from hofsi import case
 from hofsi.errors import CaseError
 from hofsi.fem.element import boundary_first
 from hofsi.fem.geometry import SideGeometry, physical_gradients, side_geometry
+from hofsi.fem.sides import boundary_sides
 from hofsi.solvers.fluid import FluidSolver, FluidState
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-__all__ = ["BoundaryForce", "NeighbourSides", "boundary_sides", "given_traction", "interface_sides", "named_sides"]
-
-
-def boundary_sides(mesh: QuadMesh) -> Index:
-    """Element sides that belong to one element only, shape (k, 2): (element, side)."""
-    pairs = np.sort(mesh.corners[:, [[0, 1], [1, 2], [2, 3], [3, 0]]].reshape(-1, 2), axis=1)
-    _, inverse, counts = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
-    alone = np.flatnonzero(counts[inverse.ravel()] == 1)
-    return np.stack([alone // 4, alone % 4], axis=-1)
+__all__ = ["BoundaryForce", "NeighbourSides", "given_traction", "interface_sides", "named_sides"]
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-__all__ = ["Coefficients", "ConstantTerms", "KeptBlocks", "MatrixOrigin", "SideTerm", "element_matrices"]
+__all__ = ["Coefficients", "ConstantTerms", "KeptBlocks", "MatrixOrigin", "SideTerm", "SkewTerms", "element_matrices"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +41,22 @@ class SideTerm:
 
 
 @dataclass(frozen=True, eq=False)
+class SkewTerms:
+    """What the skew-symmetric form of convection has beside half the plain one.
+
+    Attributes
+    ----------
+    reaction : ndarray, shape (e, q), or None
+        Coefficient of N_i N_j in both components.
+    transport : tuple of two ndarray, each (2, 2, e, q), or None
+        Coefficients of -N_j ∂_ξ N_i and -N_j ∂_η N_i in each pair of components.
+    """
+
+    reaction: Array | None
+    transport: tuple[Array, Array] | None
+
+
+@dataclass(frozen=True, eq=False)
 class Coefficients:
     """Coefficients of the terms that depend on the velocity, at the quadrature points, with the weights.
 
@@ -51,12 +67,15 @@ class Coefficients:
     reaction : ndarray, shape (2, 2, e, q), or None
         Of N_i N_j in each pair of components.
     sides : sequence of SideTerm
+    skew : SkewTerms or None
+        With it, the transpose of N_i ∂_ξ N_j and N_i ∂_η N_j is taken off.
     """
 
     along_xi: Array
     along_eta: Array
     reaction: Array | None
     sides: Sequence[SideTerm]
+    skew: SkewTerms | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,12 +231,26 @@ def element_matrices(constant: ConstantTerms, changing: Coefficients) -> MatrixM
             velocity = tensor_products.mass(products, reaction.reshape(-1, reaction.shape[-1])).reshape(kept.shape)
             velocity += kept
         convection = tensor_products.transport(products, changing.along_xi[elements], changing.along_eta[elements])
+        if changing.skew is not None:
+            convection = convection - convection.transpose(0, 2, 1)
+            _add_skew(velocity, convection, products, changing.skew, elements)
         velocity[0, 0] += convection
         velocity[1, 1] += convection
         _add(velocity, changing.sides, elements, len(changing.along_xi))
         return space.matrices(velocity, divergence)
 
     return made
+
+
+def _add_skew(
+    velocity: Array, convection: Array, products: tensor_products.ProductTables, skew: SkewTerms, elements: slice
+) -> None:
+    """Add the terms to the blocks of pairs of components (2, 2, m, n, n) and to that of both (m, n, n)."""
+    if skew.reaction is not None:
+        convection += tensor_products.mass(products, skew.reaction[elements])
+    if skew.transport is not None:
+        xi, eta = (c[:, :, elements].reshape(-1, c.shape[-1]) for c in skew.transport)
+        velocity -= tensor_products.transport(products, xi, eta).reshape(velocity.shape).transpose(0, 1, 2, 4, 3)
 
 
 def _add(velocity: Array, sides: Sequence[SideTerm], elements: slice | Index, count: int) -> None:

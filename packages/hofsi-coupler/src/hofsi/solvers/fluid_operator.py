@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from hofsi.fem.assembly import assemble_vector
 from hofsi.fem.element_matrices import TracedMatrices, batches
 from hofsi.kernels import navier_stokes as kernel
+from hofsi.solvers.fluid_convection import ConvectionTerms, FluidConvection
 from hofsi.solvers.fluid_equations import FluidEquations
-from hofsi.solvers.fluid_matrices import Coefficients, MatrixOrigin, element_matrices
+from hofsi.solvers.fluid_matrices import MatrixOrigin, element_matrices
 from hofsi.solvers.fluid_system import FluidSystem
 
 Array = NDArray[np.float64]
@@ -55,7 +56,7 @@ class FluidOperator:
     ) -> None:
         self._equations, self._points, self._mesh_velocity, self._rate = equations, points, mesh_velocity, rate
         self.share = share
-        self._about: tuple[Array, Array] | None = None
+        self._convection = FluidConvection(equations, points, mesh_velocity)
         self.load = self._external(history, time)
 
     def _external(self, history: Array, time: float) -> Array:
@@ -77,69 +78,46 @@ class FluidOperator:
         return f
 
     def matrices(self, velocity: Array, *, newton: bool) -> TracedMatrices:
-        """What makes element matrices A(u) of a nodal velocity (n, 2), with the convection ∫ ρ ((u - w)·∇·)·v.
+        """What makes element matrices A(u) of a nodal velocity (n, 2), which convects with u - w.
 
-        With ``newton`` Newton's term ∫ ρ (·∇u)·v is added.
+        With ``newton`` Newton's term, what convects u, is added.
         """
-        equations, space, relative = self._equations, self._equations.space, velocity - self._mesh_velocity
-        geometry = equations.geometry(self._points)
-        a = space.velocity.N @ relative[space.velocity_cells]
-        along = kernel.convection(geometry.weights, geometry.J_inv, self._density, a)
-        reaction = kernel.reaction(geometry.weights, self._density, self._gradient_about(velocity)) if newton else None
-        sides = equations.backflow.terms(self._points, relative)
-        equations.counts.backflows += bool(sides)
+        equations = self._equations
+        changing = self._convection.coefficients(velocity, self._density, newton=newton)
         equations.counts.assemblies += 1
         constant = equations.constant_terms(self._points, self._rate).ask()
         origin = MatrixOrigin(self._points, self._mesh_velocity, self._rate, self.share, velocity, newton)
-        return TracedMatrices(element_matrices(constant, Coefficients(*along, reaction, sides)), origin)
+        return TracedMatrices(element_matrices(constant, changing), origin)
 
     @property
     def _density(self) -> float:
         return self.share * self._equations.fluid.density
 
-    def _gradient(self, velocity: Array) -> Array:
-        """∂_b u_a at the quadrature points, shape (a, b, e, q)."""
-        space = self._equations.space
-        J_inv = self._equations.geometry(self._points).J_inv
-        return kernel.velocity_gradient(space.velocity.dN, J_inv, velocity[space.velocity_cells])
-
-    def _gradient_about(self, velocity: Array) -> Array:
-        """The same of a velocity that is linearised about, usually several times: the last one is kept."""
-        if self._about is None or self._about[0] is not velocity:
-            self._about = velocity, self._gradient(velocity)
-        return self._about[1]
-
     def residual(self, unknowns: Array) -> Array:
         """Element residuals f - A(u) u, shape (e, k), from the fields at the quadrature points, without any matrix."""
         velocity = self._velocity(unknowns)
-        relative = velocity - self._mesh_velocity
-        gradient = self._gradient(velocity)
-        advection = self._advection(gradient, relative)
-        return self._imbalance(unknowns, gradient, advection, relative)
+        gradient = self._convection.gradient(velocity)
+        convection = self._convection.full(velocity, gradient)
+        return self._imbalance(unknowns, gradient, convection, velocity - self._mesh_velocity)
 
     def residual_about(self, unknowns: Array, expected: Array, *, newton: bool) -> Array:
         """Element residuals of the equations linearised about an expected velocity (n, 2), otherwise as `residual`.
 
         The convection is û·∇u, with ``newton`` û·∇u + u·∇û - û·∇û, the advecting û less the mesh velocity.
         """
-        velocity, relative = self._velocity(unknowns), expected - self._mesh_velocity
-        gradient = self._gradient(velocity)
-        advection = self._advection(gradient, relative)
-        if newton:
-            advection += self._advection(self._gradient_about(expected), velocity - expected)
-        return self._imbalance(unknowns, gradient, advection, relative)
+        velocity = self._velocity(unknowns)
+        gradient = self._convection.gradient(velocity)
+        convection = self._convection.about(velocity, gradient, expected, newton=newton)
+        return self._imbalance(unknowns, gradient, convection, expected - self._mesh_velocity)
 
     def residual_without_convection(self, unknowns: Array) -> Array:
         """Element residuals of Stokes' equations, otherwise as `residual`."""
-        return self._imbalance(unknowns, self._gradient(self._velocity(unknowns)), None, None)
+        return self._imbalance(unknowns, self._convection.gradient(self._velocity(unknowns)), None, None)
 
-    def _advection(self, gradient: Array, advective: Array) -> Array:
-        """(a·∇) u at the quadrature points, shape (e, q, 2), of a nodal velocity a."""
-        space = self._equations.space
-        return kernel.advection(gradient, space.velocity.N @ advective[space.velocity_cells])
-
-    def _imbalance(self, unknowns: Array, gradient: Array, advection: Array | None, relative: Array | None) -> Array:
-        """Element residuals for a velocity gradient (a, b, e, q), an advection and what advects at outlets."""
+    def _imbalance(
+        self, unknowns: Array, gradient: Array, convection: ConvectionTerms | None, relative: Array | None
+    ) -> Array:
+        """Element residuals for a velocity gradient (a, b, e, q), a convection and what convects at outlets."""
         equations, space, fluid = self._equations, self._equations.space, self._equations.fluid
         geometry, velocity = equations.geometry(self._points), self._velocity(unknowns)
         divergence = gradient[0, 0] + gradient[1, 1]
@@ -147,21 +125,25 @@ class FluidOperator:
         stress = fluid.viscosity * (gradient + gradient.swapaxes(0, 1))
         for a in range(2):
             stress[a, a] += fluid.grad_div * divergence - pressure
+        if convection is not None and convection.stress is not None:
+            stress += self._density * convection.stress
         nodal = -kernel.stress_work(space.velocity.dN, geometry.J_inv, geometry.weights, stress)
-        if self._rate or advection is not None:
+        if self._rate or convection is not None:
             inertia = np.zeros((*geometry.weights.shape, 2))
             if self._rate:
                 inertia += (self._rate * fluid.density) * (space.velocity.N @ velocity[space.velocity_cells])
-            if advection is not None:
-                inertia += self._density * advection
+            if convection is not None:
+                inertia += self._density * convection.force
             nodal -= kernel.load(space.velocity.N, geometry.weights, inertia)
         r = self.load + space.local_vector(nodal)
         sources = (geometry.weights * divergence) @ space.pressure.N
         for rows, part in zip(space.rows(2), np.split(sources, [space.pressure_boundary], axis=1), strict=True):
             r[:, rows] += part
         equations.boundary.subtract_do_nothing(r, self._points, velocity)
-        if relative is not None:
+        if convection is not None and relative is not None:
             equations.backflow.subtract(r, self._points, relative, velocity)
+            for advective, advected in convection.fluxes:
+                equations.flux.add(r, self._points, -self._density, advective, advected)
         return r
 
     def _velocity(self, unknowns: Array) -> Array:
