@@ -2,8 +2,9 @@
 
 All are made from the scene of FSI3: its fluid alone with a rigid flag, the flag alone, both coupled. The two runs of a
 pair take their steps in turn, so that a slow minute of the machine meets both; a time is the processor's for a step,
-the lower quintile of all, start-up left out. "floor" is a loop that calls the fluid's solver and nothing else: what the
-time loop, the mesh and the coupling that are not there add to it is the first ratio.
+the lower quintile of all, start-up left out. A steady scene and the same marched in time are whole runs. "floor" is a
+loop that calls the fluid's solver and nothing else: what the time loop, the mesh and the coupling that are not there
+add to it is the first ratio.
 """
 
 from __future__ import annotations
@@ -50,12 +51,15 @@ class Pair:
     without, having : Side
     counts : sequence of str
         As ``"fluid.factorisations"``: what proves that the first run leaves it out.
+    whole : bool
+        Whether the runs are made to their ends, one after the other, instead of step by step in turn.
     """
 
     need: str
     without: Side
     having: Side
     counts: Sequence[str] = field(default_factory=tuple)
+    whole: bool = False
 
 
 def whole_scene() -> Scene:
@@ -92,6 +96,13 @@ def solid_scene(model: str, load: float) -> Scene:
     scene["output"] = {"fields": False, "plots": False}
     scene["time"] = {"dt": 0.005, "end": 5.0}
     scene["solid"][0] |= {"model": model, "gravity": [0.0, -load]}
+    return scene
+
+
+def laminar_scene() -> Scene:
+    """CFD1: the same channel and flag at Re = 20."""
+    scene = tomllib.loads((ROOT / "examples" / "cfd1.toml").read_text(encoding="utf-8"))
+    scene["output"] = {"fields": False, "plots": False}
     return scene
 
 
@@ -143,6 +154,19 @@ def pairs() -> list[Pair]:
         Pair("a moving mesh", still, Side("the flag carried up and down", moving), constant),
         Pair("a solid and its coupling", Side("the flag carried up and down", moving), coupled, work),
         Pair("convection", Side("Stokes", stokes), still, work),
+        Pair(
+            "convection that makes no energy",
+            still,
+            Side('convection_form = "skew-symmetric"', changed(fluid, fluid={"convection_form": "skew-symmetric"})),
+            work,
+        ),
+        Pair(
+            "steps in time",
+            Side("CFD1, steady", laminar_scene()),
+            Side("60 steps of 0.5 s", {**laminar_scene(), "time": {"dt": 0.5, "steps": 60}}),
+            work,
+            whole=True,
+        ),
         Pair("Newton's iteration of the fluid", still, Side('convection = "newton"', newton), work),
         Pair(
             "refactoring in every iteration",
@@ -181,11 +205,17 @@ def pairs() -> list[Pair]:
 def measure(pair: Pair, steps: int) -> dict[str, object]:
     """Take the steps of both runs in turn."""
     runs = [Run(side) for side in (pair.without, pair.having)]
+    if pair.whole:
+        return row(pair, runs, *(run.to_the_end() for run in runs))
     taken = np.empty((steps + _WARM, 2))
     for k in range(len(taken)):
         for side in (0, 1) if k % 2 else (1, 0):  # who comes second finds the processor as the first has left it
             taken[k, side] = runs[side].timed()
-    without, having = np.quantile(taken[_WARM:], _LEAST, axis=0)
+    return row(pair, runs, *np.quantile(taken[_WARM:], _LEAST, axis=0))
+
+
+def row(pair: Pair, runs: Sequence[Run], without: float, having: float) -> dict[str, object]:
+    """What is told of a pair, of the seconds of both runs."""
     return {
         "need": pair.need,
         "without": pair.without.name,
@@ -218,6 +248,13 @@ class Run:
             if record.state.mesh is not None:
                 self._sums["blocks_regenerated"] += record.state.mesh.regenerated
         return spent
+
+    def to_the_end(self) -> float:
+        """Take all steps and return their seconds."""
+        began = process_time()
+        for _ in self._steps:
+            pass
+        return process_time() - began
 
     def count(self, name: str) -> int:
         """A sum over the steps, or a count of the fluid or the solid."""
