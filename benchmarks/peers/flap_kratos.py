@@ -113,7 +113,8 @@ def _hofsi(order: int, mesh: str, dt: float, end: float) -> tuple[Row, Array]:
 
 
 def _kratos(size: float, dt: float, end: float, **others: Any) -> tuple[Row, Array]:
-    from _flap import Setting, run
+    from _flap_run import run
+    from _flap_settings import Setting
 
     outcome = run(Setting(size, dt, **others), end)
     row = {
