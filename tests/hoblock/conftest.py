@@ -42,6 +42,13 @@ class Layouts:
         return BlockStructure.build(vertices, {"body": [("a", "b", "c", "d")]}, counts=counts, **options)
 
     @staticmethod
+    def wide(**options):
+        """4 × 4 blocks of 40 × 40 elements."""
+        x, y = np.meshgrid(np.arange(5.0), np.arange(5.0))
+        quads = [(5 * j + i, 5 * j + i + 1, 5 * j + i + 6, 5 * j + i + 5) for j in range(4) for i in range(4)]
+        return BlockStructure.build(np.stack([x.ravel(), y.ravel()], axis=-1), quads, counts=40, **options)
+
+    @staticmethod
     def quads(kind):
         """Vertices (n, 2) and quads of a coarse layout; vertices of valence 4, 3, 5 and again 4 inside."""
         if kind == "grid":

@@ -1,7 +1,5 @@
-import gc
-import time
-import tracemalloc
-import weakref
+"""Generated meshes: conforming, on their curves, graded, checked."""
+
 from itertools import pairwise
 
 import numpy as np
@@ -10,7 +8,7 @@ import pytest
 from hoblock.blocks import BlockStructure
 from hoblock.curves import Arc, NodalCurve, Parametric
 from hoblock.errors import CurveError, GradingError, InvalidMeshError
-from hoblock.generate import changed_blocks, generate, raise_if_invalid, regenerate
+from hoblock.generate import generate, raise_if_invalid, regenerate
 from hoblock.grading import Exponential, Quadratic
 from hoblock.layout import layout
 from hoblock.mesh import QuadMesh
@@ -123,80 +121,6 @@ def test_groups_of_cells_and_sides(layouts):
     assert {name: len(sides) for name, sides in mesh.edge_groups.items()} == {"inner": 10, "outer": 10}
     for name, radius in (("inner", 1.0), ("outer", 2.0)):
         np.testing.assert_allclose(np.hypot(*mesh.points[mesh.edge_nodes(name)].T), radius, atol=1e-14)
-
-
-def test_layouts_are_shared_between_moved_structures(layouts, rng):
-    structure = layouts.random("disc", rng)
-    moved = structure.moved(structure.vertices + 0.01)
-    assert layout(moved, 3) is layout(structure, 3)
-    assert layout(moved, 2) is not layout(structure, 3)
-
-
-@pytest.mark.parametrize("kind", LAYOUTS)
-def test_regenerate_is_generate_of_the_moved_structure(kind, layouts, rng):
-    structure = layouts.random(kind, rng)
-    mesh = generate(structure, 3)
-    moved = structure.moved(structure.vertices + 0.03 * rng.uniform(-1, 1, structure.vertices.shape))
-    again = regenerate(mesh, moved)
-    assert again.cells is mesh.cells
-    np.testing.assert_array_equal(again.points, generate(moved, 3).points)
-    assert np.abs(again.points - mesh.points).max() > 0.01
-    np.testing.assert_array_equal(regenerate(again, structure).points, mesh.points)
-
-
-def test_regenerate_into_a_buffer(layouts, rng):
-    structure = layouts.random("star", rng)
-    mesh = generate(structure, 4)
-    moved = structure.moved(structure.vertices * 1.1)
-    out = np.full(mesh.points.shape, np.nan)
-    again = regenerate(mesh, moved, out=out)
-    assert np.shares_memory(again.points, out)
-    np.testing.assert_array_equal(out, regenerate(mesh, moved).points)
-    out[0] = 7.0  # the owner may still write
-    assert again.points[0, 0] == 7.0
-
-
-def test_regenerate_with_previous_writes_changed_blocks_only(layouts, rng):
-    structure = layouts.random("grid", rng)
-    mesh = generate(structure, 4)
-    vertices = np.array(structure.vertices)
-    corner = int(np.argmin(vertices.sum(axis=1)))  # the grid's corner belongs to one block
-    vertices[corner] -= 0.05
-    moved = structure.moved(vertices)
-    changed = changed_blocks(structure, moved)
-    assert changed.sum() == 1
-    # Marks inside the blocks show which are written.
-    inside = (np.arange(1, 4)[:, None] * 5 + np.arange(1, 4)).ravel()
-    marked = np.array(mesh.points)
-    marked[mesh.cells[:, inside]] = 99.0
-    again = regenerate(mesh.with_points(marked), moved, previous=structure)
-    block_of_cell = layout(structure, 4).block_of_cell
-    for cell, block in enumerate(block_of_cell):
-        nodes = again.points[mesh.cells[cell, inside]]
-        assert (nodes == 99.0).all() != changed[block]
-    np.testing.assert_array_equal(regenerate(mesh, moved, previous=structure).points, generate(moved, 4).points)
-
-
-def test_regenerate_without_change_copies(layouts, rng):
-    structure = layouts.random("disc", rng)
-    mesh = generate(structure, 3)
-    same = structure.moved(structure.vertices)
-    assert not changed_blocks(structure, same).any()
-    again = regenerate(mesh, same, previous=structure)
-    np.testing.assert_array_equal(again.points, mesh.points)
-    assert not np.shares_memory(again.points, mesh.points)
-
-
-def test_changed_curves_change_both_blocks_beside_them(layouts):
-    structure = BlockStructure.build(*layouts.quads("grid"), counts=2)
-    topology = structure.topology
-    edge = int(np.flatnonzero(topology.blocks_per_edge == 2)[0])
-    ends = structure.vertices[topology.edges[edge]]
-    bent = structure.moved(structure.vertices, {edge: layouts.bump(*ends, 0.1)})
-    changed = changed_blocks(structure, bent)
-    assert np.array_equal(changed, (topology.block_edges == edge).any(axis=1))
-    mesh = generate(structure, 3)
-    np.testing.assert_array_equal(regenerate(mesh, bent, previous=structure).points, generate(bent, 3).points)
 
 
 def test_nodal_curves_are_taken_as_they_are(layouts, rng):
@@ -349,31 +273,6 @@ def test_strongly_different_gradings_of_opposite_edges(layouts):
     assert area(generate(layouts.square(counts=10, gradings=gradings), 4)) == pytest.approx(1.0)
 
 
-def test_misuse_of_out_and_previous(layouts):
-    structure = layouts.square(counts=2)
-    mesh = generate(structure, 3)
-    with pytest.raises(ValueError, match="out is read-only, as the points of meshes are"):
-        regenerate(mesh, structure, out=mesh.points)
-    with pytest.raises(ValueError, match="out is a list; expected an array"):
-        regenerate(mesh, structure, out=[0.0])
-    other = BlockStructure.build(*layouts.quads("disc"))
-    graded = layouts.square(counts=2, gradings={("a", "b"): Exponential(2.0)})
-    for previous in (other, graded):
-        with pytest.raises(ValueError, match="previous has other blocks, counts or gradings"):
-            regenerate(mesh, structure, previous=previous)
-    named = structure.with_edge_group("all", [0, 1, 2, 3])
-    np.testing.assert_array_equal(regenerate(mesh, structure, previous=named).points, mesh.points)
-
-
-@pytest.mark.parametrize("buffer", [np.empty((98, 2))[::2], np.empty((49, 2), order="F"), np.empty((49, 3))[:, :2]])
-def test_out_of_any_layout_in_memory(buffer, layouts):
-    structure = layouts.square(counts=2)
-    mesh = generate(structure, 3)
-    moved = structure.moved(structure.vertices * [2.0, 1.0])
-    assert np.shares_memory(regenerate(mesh, moved, out=buffer).points, buffer)
-    np.testing.assert_allclose(buffer, mesh.points * [2.0, 1.0], atol=1e-15)
-
-
 def test_a_curve_that_fails_between_its_ends_is_named(layouts):
     def gap(t):
         return np.stack([t, np.where((t > 0.2) & (t < 0.8), np.nan, 0.0)], axis=-1)
@@ -388,83 +287,12 @@ def test_a_curve_that_fails_between_its_ends_is_named(layouts):
         generate(layouts.square(counts=2, curves={("a", "b"): flat}), 3)
 
 
-def test_layouts_live_as_long_as_their_structures(layouts):
-    structure = layouts.square(counts=3)
-    first = layout(structure, 4)
-    assert layout(structure.moved(structure.vertices + 1.0), 4) is first
-    alive = weakref.ref(first)
-    del structure, first
-    gc.collect()
-    assert alive() is None
-
-
-def wide_structure(**options):
-    x, y = np.meshgrid(np.arange(5.0), np.arange(5.0))
-    quads = [(5 * j + i, 5 * j + i + 1, 5 * j + i + 6, 5 * j + i + 5) for j in range(4) for i in range(4)]
-    return BlockStructure.build(np.stack([x.ravel(), y.ravel()], axis=-1), quads, counts=40, **options)
-
-
-def test_regeneration_takes_less_time_than_writing_its_nodes_as_pairs():
-    structure = wide_structure()
-    mesh = generate(structure, 4, check=False)
-    buffer, values = np.empty_like(mesh.points), np.array(mesh.points)
-    listed = np.random.default_rng(17).permutation(mesh.cells).ravel()
-    nodes = listed[np.sort(np.unique(listed, return_index=True)[1])]  # as a mesh is numbered: in pieces
-    pairs, regenerated = [], []
-    for _ in range(9):
-        start = time.process_time()
-        buffer[nodes] = values
-        middle = time.process_time()
-        regenerate(mesh, structure, out=buffer)
-        pairs.append(middle - start)
-        regenerated.append(time.process_time() - middle)
-    assert min(regenerated) < 0.8 * min(pairs)
-
-
-def test_different_gradings_need_no_temporary_arrays_of_the_size_of_the_mesh():
-    rows = [(5 * j + i, 5 * j + i + 1, j) for j in range(5) for i in range(4)]
-    structure = wide_structure(gradings={(a, b): Exponential(1.0 if j % 2 else -1.0) for a, b, j in rows})
-    mesh = generate(structure, 4, check=False)
-    buffer = np.empty_like(mesh.points)
-    tracemalloc.start()
-    regenerate(mesh, structure, out=buffer)
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert peak < 1.5 * buffer.nbytes
-
-
 def test_vertices_that_are_infinite_are_invalid_without_warnings(layouts):
     structure = layouts.square(counts=2)
     vertices = np.array(structure.vertices)
     vertices[0] = np.inf
     with pytest.raises(InvalidMeshError, match="not finite"):
         generate(structure.moved(vertices), 2)
-
-
-def test_a_study_of_gradings_does_not_fill_the_memory(layouts):
-    structure = layouts.square(counts=3)
-    first = layout(structure.with_gradings({("a", "b"): Exponential(0.1)}), 2)
-    kept = weakref.ref(first.batches[0])
-    numbers = first.numbers
-    del first
-    for a in range(40):
-        assert layout(structure.with_gradings({("a", "b"): Exponential(1.0 + a / 40)}), 2).numbers is numbers
-    gc.collect()
-    assert kept() is None
-
-
-def test_arrays_of_the_caller_stay_writeable_and_nodal_curves_their_own():
-    cells, group = np.array([[0, 1, 2, 3]]), np.array([0])
-    points = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
-    mesh = QuadMesh(points, cells, 1, {"all": group}, {})
-    assert cells.flags.writeable
-    assert group.flags.writeable
-    assert not mesh.cells.flags.writeable
-    assert not mesh.cell_groups["all"].flags.writeable
-    nodes = np.array([(0.0, 0.0), (0.5, 0.1), (1.0, 0.0)])
-    curve = NodalCurve(nodes, 2)
-    nodes[1] = 7.0
-    assert curve.points[1].tolist() == [0.5, 0.1]
 
 
 def test_gradings_and_curves_of_wrong_kinds(layouts):
