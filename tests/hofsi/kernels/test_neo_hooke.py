@@ -192,9 +192,30 @@ def test_linearised_stress_leaves_out_the_second_order(plane_stress):
     errors = []
     for step in (1e-2, 1e-3):
         S, new = stress(H, plane_stress, 3), stress(H + step * dH, plane_stress, 3)
-        linear = kernel.linearised_stress(H, S, step * dH, *parameters(3), plane_stress=plane_stress)
+        linear = kernel.linearised_stress(H, S, step * dH, S, *parameters(3), plane_stress=plane_stress)
         errors.append(np.abs(linear - new).max())
     assert np.log10(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+
+
+@PLANES
+def test_stiffness_and_linearised_stress_take_the_same_pressure(plane_stress):
+    """∫ (F dS + ΔH S):∇N of the stress S that the stiffness is made with, whatever that is."""
+    rng, dN, J_inv, weights = element_data()
+    u, du = 0.06 * rng.standard_normal((2, 3, 5, 2))
+    H, dH = (elasticity.displacement_gradient(part, dN, J_inv) for part in (u, du))
+    own = stress(H, plane_stress, 3)
+    used = own + 0.5 * np.abs(own).max() * np.moveaxis(rng.standard_normal((3, *own.shape[:2])), 0, 2)
+    products = elasticity.gradient_products(dN)
+    K = kernel.stiffness(H, used, *parameters(3), products, J_inv, weights, plane_stress=plane_stress)
+    linear = kernel.linearised_stress(H, own, dH, used, *parameters(3), plane_stress=plane_stress)
+    expected = elasticity.internal_force(
+        elasticity.deformation_gradient(H, np.ones((3, 1))), linear - own, dN, J_inv, weights
+    )
+    expected += elasticity.internal_force(dH, used, dN, J_inv, weights)
+    product = (K @ du.reshape(3, -1, 1)).reshape(3, 5, 2)
+    np.testing.assert_allclose(product, expected, atol=1e-12 * np.abs(expected).max())
+    same = kernel.stiffness(H, own, *parameters(3), products, J_inv, weights, plane_stress=plane_stress)
+    assert np.abs(K - same).max() > 0.01 * np.abs(same).max()
 
 
 def work(start, end, plane_stress):

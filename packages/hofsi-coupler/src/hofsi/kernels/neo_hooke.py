@@ -133,23 +133,31 @@ def out_of_plane(H: Array, lame_lambda: Array, lame_mu: Array, *, plane_stress: 
     return np.zeros_like(log_area), np.exp(log_thickness(log_area, lame_lambda, lame_mu))
 
 
-def _moduli(H: Array, lame_lambda: Array, lame_mu: Array, plane_stress: bool) -> tuple[Array, Array]:
-    """dp/d ln J₂ and η = μ - p."""
-    p, grown = _pressure(_log1p(_area_change(H)), lame_lambda, lame_mu, plane_stress)
+def _moduli(H: Array, S: Array, lame_lambda: Array, lame_mu: Array, plane_stress: bool) -> tuple[Array, Array]:
+    """λ' = dp/d ln J₂ of H, and η = μ - p with the pressure in S, p = (S:C - μ (tr C - 2))/2.
+
+    If S is the stress of H its pressure is that of H. Far from equilibrium p is better taken from a stress that follows
+    the solution than from H: where λ is large, the area that a finite rotation gains on the way makes a huge pressure.
+    """
+    xx, yy, xy = _metric_change(H)
+    work = S[..., 0] * (1.0 + xx) + S[..., 1] * (1.0 + yy) + 2.0 * S[..., 2] * xy
+    eta = lame_mu - 0.5 * (work - lame_mu * (xx + yy))
     if not plane_stress:
-        return lame_lambda + np.zeros_like(p), lame_mu - p
+        return lame_lambda + np.zeros_like(eta), eta
+    _, grown = _pressure(_log1p(_area_change(H)), lame_lambda, lame_mu, plane_stress)
     across = 2.0 * lame_mu * (1.0 + grown)
-    return lame_lambda * across / (across + lame_lambda), lame_mu - p
+    return lame_lambda * across / (across + lame_lambda), eta
 
 
 def linearised_stress(
-    H: Array, S: Array, increment: Array, lame_lambda: Array, lame_mu: Array, *, plane_stress: bool
+    H: Array, S: Array, increment: Array, used: Array, lame_lambda: Array, lame_mu: Array, *, plane_stress: bool
 ) -> Array:
     """S plus what an increment ΔH of the displacement gradient adds to it in first order, shape (e, q, 3).
 
-    With ε = sym(Fᵀ ΔH): dS = λ' (C⁻¹:ε) C⁻¹ + 2 η C⁻¹ ε C⁻¹, λ' = dp/d ln J₂.
+    With ε = sym(Fᵀ ΔH): dS = λ' (C⁻¹:ε) C⁻¹ + 2 η C⁻¹ ε C⁻¹, λ' = dp/d ln J₂ and η those of the stiffness that gave the
+    increment, made with the stress ``used``, shape (e, q, 3).
     """
-    of_area, eta = _moduli(H, lame_lambda, lame_mu, plane_stress)
+    of_area, eta = _moduli(H, used, lame_lambda, lame_mu, plane_stress)
     A, B, X = _inverse(_metric_change(H), (1.0 + _area_change(H)) ** 2)
     exx, eyy, exy = (0.5 * part for part in _strain_change(H, increment))
     trace = of_area * (A * exx + B * eyy + 2.0 * X * exy)
@@ -263,8 +271,8 @@ def stiffness(
 ) -> Array:
     """Derivative of `elasticity.internal_force`, shape (e, 2 i, 2 j), with local unknowns 2 i + a.
 
-    With f = F⁻ᵀ: A_{aDbC} = δ_ab S_DC + λ' f_aD f_bC + η (δ_ab C⁻¹_DC + f_aC f_bD), λ' = dp/d ln J₂, η = μ - p. The
-    stress S enters the first, geometric, term only.
+    With f = F⁻ᵀ: A_{aDbC} = δ_ab S_DC + λ' f_aD f_bC + η (δ_ab C⁻¹_DC + f_aC f_bD), λ' = dp/d ln J₂, η = μ - p, where p
+    is the pressure in S. It is the derivative if S is the stress of H.
 
     Parameters
     ----------
@@ -277,7 +285,7 @@ def stiffness(
     weights : ndarray, shape (e, q)
     plane_stress : bool
     """
-    of_area, eta = _moduli(H, lame_lambda, lame_mu, plane_stress)
+    of_area, eta = _moduli(H, S, lame_lambda, lame_mu, plane_stress)
     area = 1.0 + _area_change(H)
     f = np.empty((2, 2, *eta.shape))
     f[0, 0], f[0, 1] = (1.0 + H[..., 1, 1]) / area, -H[..., 1, 0] / area

@@ -114,7 +114,7 @@ class SolidEquations:
         """
         return self._laws.mean_stress(gradient, start)
 
-    def linearised_stress(self, gradient: Array, stress: Array, increment: Array, new: Array) -> Array:
+    def linearised_stress(self, gradient: Array, stress: Array, increment: Array, new: Array, used: Array) -> Array:
         """Stress after an increment without what is of higher order in it, shape (e, q, 3).
 
         Parameters
@@ -125,8 +125,10 @@ class SolidEquations:
             Of the gradient.
         new : ndarray, shape (e, q, 3)
             The stress after it.
+        used : ndarray, shape (e, q, 3)
+            That of the tangent which gave the increment.
         """
-        return self._laws.linearised_stress(gradient, stress, increment, new)
+        return self._laws.linearised_stress(gradient, stress, increment, new, used)
 
     def internal_force(self, gradient: Array, stress: Array) -> Array:
         """Nodal internal forces, shape (n, 2)."""
@@ -165,7 +167,7 @@ class SolidEquations:
         ----------
         gradient : ndarray, shape (e, q, 2, 2)
         stress : ndarray, shape (e, q, 3)
-            Of the geometric stiffness.
+            Of the geometric stiffness, and of what depends on the pressure otherwise.
         mass_factor : float
         pressures : sequence of FollowerPressure
         """

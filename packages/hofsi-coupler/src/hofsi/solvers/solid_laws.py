@@ -28,7 +28,7 @@ class _Law(Protocol):
 
     def mean_stress(self, H: Array, start: Array) -> Array: ...
 
-    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array) -> Array: ...
+    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array, used: Array) -> Array: ...
 
     def out_of_plane(self, H: Array, S: Array) -> tuple[Array, Array]: ...
 
@@ -63,7 +63,7 @@ class _Hooke:
     def mean_stress(self, H: Array, start: Array) -> Array:
         return self.stress(H) + elasticity.quadratic_stress(H - start, self.lame_lambda, self.lame_mu, self.m)
 
-    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array) -> Array:
+    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array, used: Array) -> Array:
         return new - elasticity.quadratic_stress(increment, self.lame_lambda, self.lame_mu, self.m)
 
     def out_of_plane(self, H: Array, S: Array) -> tuple[Array, Array]:
@@ -101,9 +101,9 @@ class _NeoHooke:
     def mean_stress(self, H: Array, start: Array) -> Array:
         return neo_hooke.mean_stress(H, start, self.lame_lambda, self.lame_mu, plane_stress=self.plane_stress)
 
-    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array) -> Array:
+    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array, used: Array) -> Array:
         parameters = self.lame_lambda, self.lame_mu
-        return neo_hooke.linearised_stress(H, S, increment, *parameters, plane_stress=self.plane_stress)
+        return neo_hooke.linearised_stress(H, S, increment, used, *parameters, plane_stress=self.plane_stress)
 
     def out_of_plane(self, H: Array, S: Array) -> tuple[Array, Array]:
         return neo_hooke.out_of_plane(H, self.lame_lambda, self.lame_mu, plane_stress=self.plane_stress)
@@ -193,7 +193,7 @@ class SolidLaws:
         """
         return self._symmetric(lambda law, own: law.mean_stress(_of(H, own), _of(start, own)), H)
 
-    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array) -> Array:
+    def linearised_stress(self, H: Array, S: Array, increment: Array, new: Array, used: Array) -> Array:
         """Stress after an increment of H, linearised in it, shape (e, q, 3).
 
         Parameters
@@ -204,15 +204,20 @@ class SolidLaws:
             Of the gradient.
         new : ndarray, shape (e, q, 3)
             The stress after it.
+        used : ndarray, shape (e, q, 3)
+            That of the stiffness which gave the increment.
         """
 
         def of(law: _Law, own: Cells) -> Array:
-            return law.linearised_stress(_of(H, own), S[own], _of(increment, own), new[own])
+            return law.linearised_stress(_of(H, own), S[own], _of(increment, own), new[own], used[own])
 
         return self._symmetric(of, H)
 
     def stiffness(self, H: Array, S: Array, products: tuple[Array, Array], J_inv: Array, weights: Array) -> Array:
-        """Derivative of the internal forces, shape (e, 2 i, 2 j); S enters the geometric stiffness alone."""
+        """Derivative of the internal forces, shape (e, 2 i, 2 j), if S is the stress of H.
+
+        S enters the geometric stiffness, and what depends on the pressure otherwise.
+        """
 
         def of(law: _Law, own: Cells) -> Array:
             return law.stiffness(_of(H, own), S[own], products, _of(J_inv, own), weights[own])

@@ -65,10 +65,11 @@ class SolidNewton:
     """Solves internal force(d) + mass · (c d + history) = force + pressures(d) under the supports of one time.
 
     A tangent is factorised when the one at hand makes too little progress, so that repeated solutions with slightly
-    different forces, as in coupling iterations, share one. Its geometric stiffness takes the stress
-    linearised about the last iterate, at first that of the last solution, instead of the iterate's own. The two agree
-    in the limit, hence convergence stays quadratic. Far away the iterate's own stress is dominated in thin bodies by
-    the membrane stress that any finite increment of rotation leaves behind, and Newton's method would follow that.
+    different forces, as in coupling iterations, share one. Its geometric stiffness, and the pressure in that of
+    neo-Hookean solids, take the stress linearised about the last iterate, at first that of the last solution, instead
+    of the iterate's own. The two agree in the limit, hence convergence stays quadratic. Far away the iterate's own
+    stress is dominated in thin bodies by the membrane stress, and in nearly incompressible ones by the pressure, that
+    any finite increment of rotation leaves behind, and Newton's method would follow that.
 
     Parameters
     ----------
@@ -270,7 +271,7 @@ class SolidNewton:
                 continue
             poor = self._too_slow(rate, trial, tolerance)
             change = self._equations.gradient(increment)
-            geometric = self._equations.linearised_stress(point.gradient, point.stress, change, trial.stress)
+            geometric = self._equations.linearised_stress(point.gradient, point.stress, change, trial.stress, geometric)
             point, moving, fresh = trial, False, False
         raise self._error(
             f"Newton's method stopped at a relative residual of {point.norm / point.scale:.2g} after "
