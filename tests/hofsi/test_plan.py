@@ -224,6 +224,16 @@ def test_linear_solver_of_solids(read_changed: Read, solid_alone: str, solver: s
     assert ("multigrid" in _names(planned.skipped)) == (solver == "direct")
 
 
+def test_who_is_solved_together_with_whom(read_changed: Read) -> None:
+    """Direct factors tell how the fluid answers, multigrid does not."""
+    direct = plan(read_changed())
+    assert "solid solved together" in _built(direct, "condensation")
+    pytest.importorskip("pyamg")
+    multigrid = plan(read_changed(("[coupling]", '[linear]\nsolver = "amg"\n[coupling]')))
+    assert "condensation" not in _names(multigrid.built)
+    assert "take iterations" in _skipped(multigrid, "condensation")
+
+
 def test_linear_solver_is_chosen_with_a_reason(
     read_changed: Read, fluid_alone: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,9 +20,9 @@ def watch_of(gain):
     return watch
 
 
-def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils", steady=False):
-    settings = CouplingSettings(acceleration=acceleration)
-    return coupling_failure(verdict, Residuals(*residuals), TEST, watch_of(gain), settings, "here", steady=steady)
+def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils", steady=False, together=True):
+    settings, left = CouplingSettings(acceleration=acceleration), Residuals(*residuals)
+    return coupling_failure(verdict, left, TEST, watch_of(gain), settings, "here", steady=steady, together=together)
 
 
 @pytest.mark.parametrize(
@@ -62,6 +62,12 @@ def failure(verdict="", residuals=(2e-3, 0.4), gain=0.2, acceleration="iqn-ils",
             r"Raise coupling.max_iterations, or lower the load, or start nearer to the solution\.$",
         ),
         (
+            {"gain": 3.0, "together": False, "verdict": "stalled"},
+            "stalled",
+            r'added mass .* Let fluid and solid be solved together, with linear.solver = "direct" and linear',
+        ),
+        ({"steady": True, "together": False}, "max_iterations", r"0.0001. Raise coupling.max_iterations, or lower the"),
+        (
             {"gain": 3.0},
             "max_iterations",
             r"by 3 times the opposite one: its added mass .* Raise .*, or make the solid heavier",
@@ -88,8 +94,10 @@ def test_the_added_mass_is_an_error_of_its_own():
 def test_solids_that_fail_under_the_iterates_of_a_heavy_fluid_are_not_blamed():
     error = NewtonError("Newton's method stopped.", "max_iterations", "solid, t = 1")
     settings = CouplingSettings()
-    assert solid_failure(error, watch_of(4.0), settings, "here", steady=False) is error  # accelerations bear that
-    found = solid_failure(error, watch_of(30.0), settings, "here", steady=False)
+    assert (
+        solid_failure(error, watch_of(4.0), settings, "here", steady=False, together=True) is error
+    )  # accelerations bear that
+    found = solid_failure(error, watch_of(30.0), settings, "here", steady=False, together=True)
     assert isinstance(found, AddedMassError)
     assert (found.gain, found.reason) == (pytest.approx(30.0), "diverged")
     with pytest.raises(
@@ -101,7 +109,7 @@ def test_solids_that_fail_under_the_iterates_of_a_heavy_fluid_are_not_blamed():
 def test_where_fluid_and_solid_are_not_solved_together_that_is_a_way_out():
     error = NewtonError("Newton's method stopped.", "max_iterations", "solid, t = 1")
     apart = CouplingSettings(condensed=False)
-    found = solid_failure(error, watch_of(30.0), apart, "here", steady=False)
+    found = solid_failure(error, watch_of(30.0), apart, "here", steady=False, together=False)
     assert "Leave coupling.condensed on, or make the solid heavier" in str(found)
     assert in_iteration(found, apart, steady=False) is found
     told = in_iteration(error, apart, steady=False)

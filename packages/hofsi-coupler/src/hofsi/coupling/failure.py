@@ -24,6 +24,7 @@ def coupling_failure(
     where: str,
     *,
     steady: bool,
+    together: bool,
 ) -> CouplingError:
     """Return the error of a step that has used up its iterations, has stalled or diverges.
 
@@ -38,6 +39,8 @@ def coupling_failure(
     settings : CouplingSettings
     where : str
     steady : bool
+    together : bool
+        Whether the solids took the fluid's answer into their solution.
     """
     problem = f"{_happened(verdict, watch)}: {_left(residuals, test)}."
     reason = {"": "max_iterations", "stalled": "stalled", "diverging": "diverged"}[verdict]
@@ -48,7 +51,7 @@ def coupling_failure(
             "nonlinear.tolerance."
         )
         return CouplingError(f"{problem} {way}", reason, where)
-    more = _more(verdict, settings, steady=steady)
+    more = _more(verdict, settings, apart=not (together or steady))
     if steady:
         way = _choice([*more, "lower the load", "start nearer to the solution"])
         return CouplingError(f"{problem} {way}", reason, where)
@@ -58,7 +61,7 @@ def coupling_failure(
 
 
 def solid_failure(
-    error: ConvergenceError, watch: StallWatch, settings: CouplingSettings, where: str, *, steady: bool
+    error: ConvergenceError, watch: StallWatch, settings: CouplingSettings, where: str, *, steady: bool, together: bool
 ) -> ConvergenceError:
     """Return what is said of solids that found no equilibrium under a load of the coupling's iteration.
 
@@ -72,14 +75,16 @@ def solid_failure(
         With all iterations before that.
     settings : CouplingSettings
     where : str
-    steady : bool
+    steady, together : bool
+        As of `coupling_failure`.
     """
     if watch.gain <= _DOMINANT:
         return error
     problem = (
         f"diverging: after {watch.iterations} iterations the solids bear the fluid's load no more ({error.problem})"
     )
-    return _added_mass(problem, _more("diverging", settings, steady=steady), "diverged", where, watch)
+    more = _more("diverging", settings, apart=not (together or steady))
+    return _added_mass(problem, more, "diverged", where, watch)
 
 
 def rounding_failure(noise: float, where: str) -> CouplingError:
@@ -126,9 +131,13 @@ def _left(residuals: Residuals, test: ConvergenceTest) -> str:
     )
 
 
-def _more(verdict: Verdict, settings: CouplingSettings, *, steady: bool) -> list[str]:
-    """Settings that may help."""
-    ways = [] if settings.condensed or steady else ["leave coupling.condensed on"]
+def _more(verdict: Verdict, settings: CouplingSettings, *, apart: bool) -> list[str]:
+    """Settings that may help, where fluid and solid could be solved together and are not, too."""
+    ways = []
+    if apart and settings.condensed:
+        ways = ['let fluid and solid be solved together, with linear.solver = "direct" and linear steps of the fluid']
+    elif apart:
+        ways = ["leave coupling.condensed on"]
     ways += [] if settings.acceleration in ("iqn-ils", "imvj") else ['set coupling.acceleration = "iqn-ils"']
     return ways if verdict else [*ways, "raise coupling.max_iterations"]
 

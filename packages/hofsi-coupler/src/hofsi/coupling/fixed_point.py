@@ -182,7 +182,8 @@ class FixedPoint:
                     response = self._response(now, d, response)
                     displacement = solid_step.solve(load, displacement, tolerance=inner, response=response)
             except ConvergenceError as error:
-                raise solid_failure(error, watch, settings, where, steady=steady) from error
+                together = response is not None
+                raise solid_failure(error, watch, settings, where, steady=steady, together=together) from error
             image = displacement[self._interface.solid]
             residual = image - d
             if not (np.isfinite(residual).all() and np.isfinite(now.force).all()):
@@ -217,7 +218,8 @@ class FixedPoint:
         noise = self._noise(now, response, d)
         if noise > settings.force_tolerance:
             raise rounding_failure(noise, where)
-        raise coupling_failure(verdict, residuals, self.test, watch, settings, where, steady=steady)
+        together = response is not None
+        raise coupling_failure(verdict, residuals, self.test, watch, settings, where, steady=steady, together=together)
 
     def _noise(self, flow: Flow, response: LoadResponse | None, d: Array) -> float:
         """Rounding error of the load relative to it, as far as the fluid tells how it answers to displacements.

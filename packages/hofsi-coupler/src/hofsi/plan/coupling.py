@@ -22,6 +22,7 @@ from hofsi.movers import placed_vertices
 from hofsi.plan.facts import counted, is_coupled, moves
 from hofsi.plan.meshes import Meshes
 from hofsi.plan.report import Item
+from hofsi.plan.sizes import linear_solvers
 
 Index = NDArray[np.int64]
 
@@ -74,11 +75,9 @@ def coupling_items(case: Case, meshes: Meshes) -> Iterator[Item]:
         yield Item("geometry", "implicit: a new fluid mesh in every coupling iteration")
     else:
         yield Item("geometry", "extrapolated: one fluid mesh a step")
-    if settings.condensed and not isinstance(case.time, Steady) and _linear(case):
-        yield Item(
-            "condensation",
-            "fluid condensed to the interface and the solid solved together with it, where both solve directly",
-        )
+    direct = all(choice.solver == "direct" for choice in linear_solvers(case, meshes).values())
+    if settings.condensed and not isinstance(case.time, Steady) and _linear(case) and direct:
+        yield Item("condensation", "fluid condensed to the interface, and the solid solved together with it")
 
 
 def _linear(case: Case) -> bool:

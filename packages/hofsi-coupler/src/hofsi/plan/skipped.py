@@ -80,6 +80,8 @@ def _without_iteration(case: Case, solvers: Mapping[str, Choice]) -> Iterator[It
             yield Item("fluid's Newton iteration", f"linear steps: one {factor} a step{meshes}{unless}")
     if all(choice.solver == "direct" for choice in solvers.values()):
         yield Item("multigrid", "LU serves" if case.linear.solver == "auto" else 'linear.solver = "direct"')
+    elif is_coupled(case) and case.coupling.condensed and isinstance(case.time, Unsteady):
+        yield Item("condensation", "multigrid does not tell how fluid or solid answer the other: they take iterations")
     if case.solids and all(solid.model == "linear" for solid in case.solids):
         one_step = isinstance(case.time, Unsteady) and case.time.tolerance is None and case.time.first is None
         often = "once" if case.scheme.name != "bdf2" and one_step else _once(case)  # without a first step of its own
