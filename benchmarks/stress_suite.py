@@ -7,7 +7,8 @@ solutions, energies, iterations), or it is given up with the right error. What m
     python benchmarks/stress_suite.py --quick                # a minute
     python benchmarks/stress_suite.py gradings added_mass    # groups
 
-The exit code is 1 if a case is not as expected.
+The exit code is 1 if a case is not as expected that is not known to be (stress/still_open.py), or one that is known to
+be has been mended.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from collections.abc import Sequence
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # before NumPy: more threads only disturb small matrices
 
 from _result import Result, parser, report
-from stress import AS_EXPECTED, GROUPS, NOT_AS_EXPECTED, carried_out
+from stress import AS_EXPECTED, GROUPS, NOT_AS_EXPECTED, carried_out, surprises
 
 
 def main(argv: Sequence[str] | None = None) -> Result:
@@ -45,9 +46,11 @@ def main(argv: Sequence[str] | None = None) -> Result:
     result = report(Result("stress_suite", {"quick": asked.quick}, rows), asked.json)
     wrong = sum(row["verdict"] == NOT_AS_EXPECTED for row in rows)
     print(f"\n{len(rows) - wrong} of {len(rows)} cases {AS_EXPECTED}")
+    print("\n".join(surprises(rows, quick=asked.quick)))
     return result
 
 
 if __name__ == "__main__":
     warnings.simplefilter("error")
-    sys.exit(any(row["verdict"] == NOT_AS_EXPECTED for row in main().rows))
+    result = main()
+    sys.exit(bool(surprises(result.rows, quick=bool(result.settings["quick"]))))

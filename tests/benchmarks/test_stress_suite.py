@@ -91,6 +91,21 @@ def test_what_nobody_expected_is_a_row(suite, row):
     assert found["found"] == "ZeroDivisionError: by nothing"
 
 
+def test_open_cases_are_there_and_others_are_news(suite):
+    for group, cases in suite.stress.OPEN.items():
+        assert cases <= {case.name for case in suite.stress.GROUPS[group]}
+    group, known = next((group, min(cases)) for group, cases in suite.stress.OPEN.items())
+
+    def news(case, verdict, *, quick=False):
+        return suite.stress.surprises([{"group": group, "case": case, "verdict": verdict, "found": "x"}], quick=quick)
+
+    good, bad = suite.stress.AS_EXPECTED, suite.stress.NOT_AS_EXPECTED
+    assert news(known, bad) == news("another", good) == []
+    assert news("another", bad) == [f"{group}: another: x"]
+    assert "take it off" in news(known, good)[0]
+    assert news(known, good, quick=True) == []
+
+
 def test_det_J_is_sampled_as_it_is(suite):
     from hoblock import BlockStructure, generate
 
