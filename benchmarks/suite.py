@@ -1,6 +1,6 @@
 """All tables and pictures of docs/benchmarks.md and docs/stability.md, made by one command.
 
-    python benchmarks/suite.py                # an hour and a half on two processors, two studies at a time
+    python benchmarks/suite.py                # an hour on two processors, two studies at a time
     python benchmarks/suite.py --quick        # some minutes: smaller studies, pages in results/quick
     python benchmarks/suite.py skipping bench # some of them
 

@@ -52,7 +52,7 @@ class Fluid:
     grad_div : float
         γ of the term ∫ γ (∇·u)(∇·v), of the unit of the viscosity; 0 for none.
     convection_form : {"convective", "skew-symmetric"}
-        Whether ∫ ½ ρ (∇·u) u·v is added, which vanishes for the exact solution and lets no energy come from convection.
+        Plain, or the form from which no energy comes: `hofsi.solvers.fluid_convection`. The exact solution has both.
     place : str
     """
 

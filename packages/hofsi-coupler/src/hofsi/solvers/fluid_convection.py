@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,27 +55,25 @@ class FluidConvection:
         self._equations, self._points, self._mesh_velocity = equations, points, mesh_velocity
         self._skew = equations.fluid.skew_symmetric
         self._about: tuple[Array, Array] | None = None
-        self._spreading: tuple[Array | None] | None = None
 
     def coefficients(self, velocity: Array, density: float, *, newton: bool) -> Coefficients:
         """Those of matrices of c(u - w; ·, ·) of a nodal velocity (n, 2), with ``newton`` of c(·; u, ·) too."""
-        equations, space, relative = self._equations, self._equations.space, velocity - self._mesh_velocity
+        equations, relative = self._equations, velocity - self._mesh_velocity
         geometry = equations.geometry(self._points)
         w, J_inv = geometry.weights, geometry.J_inv
         part = 0.5 * density if self._skew else density
-        along = kernel.convection(w, J_inv, part, space.velocity.N @ relative[space.velocity_cells])
+        along = kernel.convection(w, J_inv, part, self._at_points(relative))
         reaction = kernel.reaction(w, part, self._gradient_about(velocity)) if newton else None
         sides = equations.backflow.terms(self._points, relative)
         equations.counts.backflows += bool(sides)
         if not self._skew:
             return Coefficients(*along, reaction, sides)
-        spreading, pairs = self._spreading_mesh(), None
+        pairs = None
         sides += equations.flux.terms(self._points, density, relative)
         if newton:
-            u = space.velocity.N @ velocity[space.velocity_cells]
-            pairs = kernel.advected_transport(w, J_inv, part, u)
+            pairs = kernel.advected_transport(w, J_inv, part, self._at_points(velocity))
             sides += equations.flux.derivatives(self._points, density, velocity)
-        skew = SkewTerms(None if spreading is None else part * w * spreading, pairs)
+        skew = SkewTerms(None if self._spreading is None else part * w * self._spreading, pairs)
         return Coefficients(*along, reaction, sides, skew)
 
     def full(self, velocity: Array, gradient: Array) -> ConvectionTerms:
@@ -102,9 +101,8 @@ class FluidConvection:
             fluxes.append((velocity - expected, expected))
         if not self._skew:
             return ConvectionTerms(force, None, ())
-        spreading = self._spreading_mesh()
-        if spreading is not None:
-            force += spreading[..., None] * self._at_points(velocity)
+        if self._spreading is not None:
+            force += self._spreading[..., None] * self._at_points(velocity)
         stress = sum(kernel.advected_stress(self._at_points(u), self._at_points(a)) for a, u in fluxes)
         return ConvectionTerms(0.5 * force, np.asarray(0.5 * stress), fluxes)
 
@@ -119,12 +117,10 @@ class FluidConvection:
             self._about = velocity, self.gradient(velocity)
         return self._about[1]
 
-    def _spreading_mesh(self) -> Array | None:
+    @cached_property
+    def _spreading(self) -> Array | None:
         """∇·w at the quadrature points, shape (e, q), or None if the mesh stands still."""
-        if self._spreading is None:
-            found = None
-            if self._mesh_velocity.any():
-                gradient = self.gradient(self._mesh_velocity)
-                found = np.asarray(gradient[0, 0] + gradient[1, 1])
-            self._spreading = (found,)
-        return self._spreading[0]
+        if not self._mesh_velocity.any():
+            return None
+        gradient = self.gradient(self._mesh_velocity)
+        return np.asarray(gradient[0, 0] + gradient[1, 1])

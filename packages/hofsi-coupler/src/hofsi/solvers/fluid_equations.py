@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +77,6 @@ class FluidEquations:
         self.products = _velocity_products(self.space)
         self.boundary = FluidBoundary(mesh, self.space, fluid.boundaries, interface, fluid.viscosity, driven)
         self.backflow = Backflow(mesh, self.space, fluid.boundaries, fluid.density)
-        self.flux = ConvectiveFlux(mesh, self.space)
         self.counts = Counts()
         self.factors = FluidFactors(self.counts, linear.lag)
         self._system: FluidSystem | None = None
@@ -88,6 +88,11 @@ class FluidEquations:
         self._stokes: tuple[ConstantTerms, FluidSystem, Solver] | None = None
         self._stokes_respond = False
         self._alike: Array = mesh.points
+
+    @cached_property
+    def flux(self) -> ConvectiveFlux:
+        """What flows through the boundary, made for the form of convection that needs it."""
+        return ConvectiveFlux(self.mesh, self.space)
 
     @property
     def convecting(self) -> bool:
